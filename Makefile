@@ -1,0 +1,88 @@
+# Everything runs from here: `make help` lists the targets.
+PYTHON ?= python3
+VENV ?= .venv
+BENCH_VENV ?= .venv-bench
+# Worker processes of the test run; the default suits two cores.
+JOBS ?= 2
+BIN := $(VENV)/bin
+PIP_INSTALL := -m pip install --quiet --retries 10 --timeout 60 -c constraints.txt
+
+# One single-threaded process a core: threads inside BLAS only fight the worker processes for the caches.
+export OPENBLAS_NUM_THREADS = 1
+export OMP_NUM_THREADS = 1
+export PIP_DISABLE_PIP_VERSION_CHECK = 1
+export MPLBACKEND = Agg
+
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+.PHONY: help demo test test-full lint types imports docs examples check bench constraints clean
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name what; do printf '  %-12s %s\n' "$$name" "$$what"; done
+
+demo: $(VENV)/.installed-run  ## install, then compare the shipped truck's dual mass flywheel with its single mass one
+	$(BIN)/torsional report examples/truck_dmf.yaml --compare examples/truck_smf.yaml
+
+test: $(VENV)/.installed-test  ## install what the tests need and run them all
+	$(BIN)/python -m pytest -n $(JOBS)
+
+test-full: $(VENV)/.installed-test  ## the tests with the heavy checks
+	$(BIN)/python -m pytest -n $(JOBS) -m "full or not full"
+
+lint: $(VENV)/.installed-lint  ## ruff
+	$(BIN)/ruff check --no-cache .
+
+types: $(VENV)/.installed-lint  ## mypy, strict, on the package
+	$(BIN)/mypy
+
+imports: $(VENV)/.installed-lint  ## imports go down the floors only
+	$(BIN)/lint-imports --no-cache
+
+docs: $(VENV)/.installed-docs  ## build the pages, executing them; a warning is an error
+	$(BIN)/python -m sphinx -E -W --keep-going -q -b html docs docs/_build/html
+	@echo "The pages are in docs/_build/html/index.html"
+
+examples: $(VENV)/.installed-run  ## check every model file and run every script in examples/
+	@set -e; for file in examples/*.yaml; do [ -e "$$file" ] || continue; echo "torsional check $$file"; $(BIN)/torsional check "$$file"; done
+	@set -e; for file in examples/*.py; do [ -e "$$file" ] || continue; echo "python $$file"; $(BIN)/python "$$file"; done
+
+check: lint types imports examples docs test  ## everything CI runs
+
+bench: $(BENCH_VENV)/.installed-bench  ## time this project beside its peers, in an environment of their own
+	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini benchmarks
+
+constraints: | python-version  ## pin anew: names and versions from a fresh environment, into constraints.txt
+	rm -rf .venv-pins
+	$(PYTHON) -m venv .venv-pins
+	.venv-pins/bin/python -m pip install --quiet --retries 10 '.[test,lint,docs,bench]' hatchling editables $(PEERS)
+	.venv-pins/bin/python -m pip freeze | grep -v -e '@' -e '^-e' -e '^torsional==' > constraints.txt
+	rm -rf .venv-pins
+
+clean:  ## remove what was built, the environments too
+	rm -rf $(VENV) $(BENCH_VENV) .venv-pins docs/_build docs/_generated jupyter_execute .benchmarks build dist
+	find src tests benchmarks docs examples -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# --- environments: a stamp file says that an install is done; a change of the project file or of the pins undoes it ---
+
+PEERS := opentorsion
+
+.PHONY: python-version
+python-version:
+	@command -v $(PYTHON) > /dev/null || { echo "There is no '$(PYTHON)' here: install Python 3.11 or newer, or name one, as in: make demo PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "torsional needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V 2>&1): name another, as in: make demo PYTHON=python3.12"; exit 1; }
+
+$(VENV)/bin/python $(BENCH_VENV)/bin/python: | python-version
+	@$(PYTHON) -m venv $(@D)/.. || { echo "'$(PYTHON)' cannot make a virtual environment; on Debian and Ubuntu install python3-venv."; rm -rf $(@D)/..; exit 1; }
+
+$(VENV)/.installed-run: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/python $(PIP_INSTALL) -e .
+	@touch $@
+
+$(VENV)/.installed-test $(VENV)/.installed-lint $(VENV)/.installed-docs: $(VENV)/.installed-%: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(BIN)/python $(PIP_INSTALL) -e '.[$*]'
+	@touch $@ $(VENV)/.installed-run
+
+$(BENCH_VENV)/.installed-bench: pyproject.toml constraints.txt | $(BENCH_VENV)/bin/python
+	$(BENCH_VENV)/bin/python $(PIP_INSTALL) -e '.[test,bench]' $(PEERS)
+	@touch $@
