@@ -1,0 +1,36 @@
+"""Sphinx configuration: pages are executed, warnings are errors, reference and nomenclature come from the package."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+import generate  # noqa: E402
+
+project = "torsional"
+author = "The torsional developers"
+copyright = "2026, The torsional developers"
+release = generate.release()
+
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx.ext.viewcode"]
+exclude_patterns = ["_build", "jupyter_execute"]
+html_theme = "furo"
+html_title = f"torsional {release}"
+
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
+myst_heading_anchors = 3
+nb_execution_mode = "auto"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_merge_streams = True
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+
+generate.write_all(HERE / "_generated")
+
+
+def setup(app):
+    """Docstrings are plain text with code in double backticks; see `generate.restructured`."""
+    app.connect("autodoc-process-docstring", generate.process_docstring)
