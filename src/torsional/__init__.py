@@ -1,1 +1,46 @@
-"""torsional."""
+"""Torsional vibrations of vehicle powertrains and the absorbers that tame them.
+
+Names are imported when they are first used, so that ``import torsional`` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "absorbers": "CentrifugalPendulum Rollers cancellation_frequency dual_mass_flywheel planetary_dual_mass_flywheel "
+    "power_split_absorber single_mass_flywheel tuned_flange_flywheel tuned_secondary_flywheel with_pendulum",
+    "components": "Coupling Damper DistributedShaft GearPair Inertia PlanetSpin PlanetaryGear Shaft Superposition "
+    "Tyre Vehicle",
+    "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
+    "errors": "ModelError TorsionalError",
+    "laws": "Hinges Law",
+    "model": "Gear Landmarks Model Operation",
+    "powertrain": "Powertrain",
+    "results": "load_results save_results",
+    "solvers.equilibrium": "OperatingPoint equilibrium linearize",
+    "solvers.harmonic": "harmonic_response",
+    "solvers.modal": "damped_modes modal",
+    "solvers.map": "response_map",
+    "solvers.operating": "operated",
+    "stamps": "Connection Constraint Mass SpeedSwitch",
+    "system": "System assemble",
+}
+_WHERE = {name: home for home, names in _HOMES.items() for name in names.split()}
+
+__all__ = sorted(_WHERE)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'torsional' has no attribute '{name}'")
+    value = getattr(import_module(f"torsional.{_WHERE[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -38,9 +38,8 @@ class ModelError(TorsionalError, ValueError):
     def located(self, *, file: str = "", prefix: str = "") -> ModelError:
         """The same error with the file named and the key path prefixed."""
         where = ".".join(part for part in (prefix, self.where) if part)
-        return type(self)(
-            self.problem, where=where, found=self.found, allowed=self.allowed, remedy=self.remedy, file=file or self.file
-        )
+        told = {"found": self.found, "allowed": self.allowed, "remedy": self.remedy}
+        return type(self)(self.problem, where=where, file=file or self.file, **told)
 
 
 def nearest(word: str, known: Iterable[str]) -> str:

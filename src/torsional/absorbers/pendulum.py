@@ -1,0 +1,145 @@
+"""Centrifugal pendulum vibration absorber (CPVA), linearised: an absorber whose stiffness grows with Ω²."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.integrate import quad
+from scipy.special import ellipk
+
+from torsional.absorbers.base import Absorber
+from torsional.components import checks
+from torsional.errors import ModelError
+from torsional.stamps import Connection, Mass, Stamp
+
+Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
+
+
+@dataclass(frozen=True)
+class Rollers:
+    """Rollers of a bifilar pendulum: ``mass`` [kg] and spin ``inertia`` [kgm²] of all, ``radius`` [m], ``distance``
+    [m] of their centres from the axis.  A roller's centre makes half the pendulum's way and turns by −s/(2r)."""
+
+    mass: float
+    inertia: float
+    radius: float
+    distance: float
+
+
+@dataclass(frozen=True)
+class CentrifugalPendulum:
+    """Pendulums of ``mass`` m [kg] in all, their centre at ``distance`` c [m] from the axis, tuned to ``order`` n.
+
+    From T = ½Jθ̇² + ½m(ṡ² + R²θ̇² + 2Gṡθ̇) at small s follow the inertia m c² and the stiffness m c² n² Ω² between
+    ``carrier`` and pendulum (its angle is θ + s/c); every ``path`` has the same order at small amplitude
+    n² = c/ρ0 − 1, ρ0 the radius of curvature at rest (Denman, J. Sound Vib. 159 (1992) 251).  ``damping`` [Nms/rad].
+
+    >>> p = CentrifugalPendulum("rotor", mass=1.0, distance=0.1 * (1 + 1 / 9), order=3.0)
+    >>> round(p.curvature_radius, 9)
+    0.011111111
+    """
+
+    carrier: str
+    mass: float
+    distance: float
+    order: float
+    damping: float = 0.0
+    path: Path = "circular"
+    rollers: Rollers | None = None
+
+    def __post_init__(self) -> None:
+        checks.positive(self.mass, "mass", "mass")
+        checks.positive(self.distance, "distance", "length")
+        checks.positive(self.order, "order", "engine_order")
+        checks.not_negative(self.damping, "damping", "damping")
+        if self.path not in ("circular", "cycloid", "epicycloid", "tautochrone"):
+            allowed = "circular, cycloid, epicycloid, tautochrone"
+            raise ModelError("no such pendulum path", where="path", found=repr(self.path), allowed=allowed)
+
+    @property
+    def curvature_radius(self) -> float:
+        """ρ0 = c/(1 + n²) [m]."""
+        return self.distance / (1 + self.order**2)
+
+    def stamps(self, name: str) -> Iterator[Stamp]:
+        """½ m c² ψ̇² and the centrifugal spring m c² n² Ω² along ψ − θ; rollers as two more masses."""
+        moment = self.mass * self.distance**2
+        along = {self.carrier: -1.0, name: 1.0}
+        stiffness = moment * self.order**2
+        yield Mass(name, {name: 1.0}, moment)
+        if self.rollers:
+            rho, half, spin = self.curvature_radius, self.distance / 2, self.distance / (2 * self.rollers.radius)
+            stiffness += self.rollers.mass * self.distance**2 * (self.rollers.distance - rho / 2) / (2 * rho)
+            way = {self.carrier: self.rollers.distance - half, name: half}
+            yield Mass(f"{name}.rollers", way, self.rollers.mass)
+            yield Mass(f"{name}.roller_spin", {self.carrier: 1.0 + spin, name: -spin}, self.rollers.inertia)
+        yield Connection(
+            f"{name}.suspension", along, damping=self.damping, centrifugal_stiffness=stiffness, carrier=self.carrier
+        )
+
+
+def tuning_order(path: Path, order: float, distance: float, amplitude: float) -> float:
+    """Order of free oscillation at arc ``amplitude`` [m] of a pendulum tuned to ``order`` at small amplitude.
+
+    At constant Ω, ½ṡ² − ½R²(s)Ω² is conserved, so the period is a quadrature over the path's R²(s).  The circle:
+    n(φ0)/n0 = π / (2 K(sin²(φ0/2))).  Raises ModelError beyond the end of the path.
+
+    >>> rho = 0.1 / 10
+    >>> round(tuning_order("circular", 3.0, 0.1, rho * math.radians(30)) / 3.0, 8)
+    0.98288908
+    """
+    if path == "circular":
+        swing = amplitude * (1 + order**2) / distance
+        return order * math.pi / (2 * float(ellipk(math.sin(swing / 2) ** 2)))
+    end = distance / (order * math.sqrt(1 + order**2))
+    if not 0 < amplitude <= end and path != "cycloid":
+        raise ModelError("the pendulum's path ends before", where="amplitude", found=f"{amplitude:g} m")
+    if path in ("tautochrone", "epicycloid"):
+        return order
+
+    def integrand(u: float) -> float:
+        s = amplitude * math.sin(u)
+        return amplitude * math.cos(u) / math.sqrt(squared_distance(path, order, distance, s) - rest)
+
+    rest = squared_distance(path, order, distance, amplitude)
+    quarter = quad(integrand, 0.0, math.pi / 2 - 1e-7, epsrel=1e-11)[0]
+    return math.pi / 2 / float(quarter)
+
+
+def squared_distance(path: Path, order: float, distance: float, arc: float) -> float:
+    """R²(s) [m²] of the pendulum from the axis at arc length s [m] along the path with ρ² = ρ0² − λ² s².
+
+    λ = 0 circle, 1 cycloid, n/sqrt(1 + n²) the epicycloid, which is the tautochrone R² = c² − n² s².
+    """
+    rho = distance / (1 + order**2)
+    if path == "tautochrone":
+        return distance**2 - order**2 * arc**2
+    factor = {"circular": 0.0, "cycloid": 1.0, "epicycloid": order / math.sqrt(1 + order**2)}[path]
+
+    def direction(s: float) -> float:
+        return s / rho if factor == 0 else math.asin(factor * s / rho) / factor
+
+    along = quad(lambda s: math.cos(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
+    inwards = quad(lambda s: math.sin(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
+    return float(np.hypot(along, distance - inwards) ** 2)
+
+
+def with_pendulum(absorber: Absorber, pendulum: CentrifugalPendulum) -> Absorber:
+    """Any absorber with a pendulum on one of its bodies.
+
+    >>> from torsional.absorbers.single_mass import single_mass_flywheel
+    >>> with_pendulum(single_mass_flywheel(1.9), CentrifugalPendulum("flywheel", 3.0, 0.12, 3.0)).kind
+    'single mass flywheel with pendulum'
+    """
+    if pendulum.carrier not in absorber.nodes:
+        raise ModelError(
+            "the pendulum's carrier is not a body of the absorber",
+            where="pendulum.carrier",
+            found=repr(pendulum.carrier),
+            allowed=", ".join(absorber.nodes),
+        )
+    return absorber.joined({"pendulum": pendulum}, kind=f"{absorber.kind} with pendulum")

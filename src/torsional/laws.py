@@ -1,0 +1,233 @@
+"""Force laws: each is data plus one scalar compiled function that every solver calls.
+
+A law's ``kernel`` is a compiled function of plain floats::
+
+    torque(parameters, angle, rate, memory) -> (torque, d_torque_d_angle, d_torque_d_rate, memory)
+
+The Python object holds the named, checked values, packs them into ``parameters`` and broadcasts the same function over
+arrays.  A law of one's own is a subclass of `Law` with a ``kernel`` and ``parameters``; no solver changes.
+"""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numba
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, IntArray
+
+_FEW = 2000
+
+
+@numba.njit(cache=True)
+def _broadcast(kernel: Any, parameters: Array, angle: Array, rate: Array, memory: Array) -> Array:
+    out = np.empty((4, angle.size))
+    for i in range(angle.size):
+        torque, d_angle, d_rate, state = kernel(parameters, angle[i], rate[i], memory[i])
+        out[0, i], out[1, i], out[2, i], out[3, i] = torque, d_angle, d_rate, state
+    return out
+
+
+class Law:
+    """A torque law along one relative angle; subclasses give ``kernel`` and ``parameters``."""
+
+    kernel: ClassVar[Callable[..., Any]]
+
+    @property
+    def parameters(self) -> Array:
+        """The law's values as one flat array, in the order its kernel reads them."""
+        raise TypeError(f"{type(self).__name__} must define its parameters")
+
+    def evaluate(self, angle: ArrayLike, rate: ArrayLike = 0.0, memory: ArrayLike = 0.0) -> tuple[Array, ...]:
+        """Torque [Nm], its derivatives by angle and rate, and the new memory, broadcast over the arguments."""
+        arrays = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (angle, rate, memory)))
+        kernel: Any = type(self).kernel
+        broadcast: Any = _broadcast
+        if arrays[0].size < _FEW:  # the same functions without their compilation, which outlasts a few thousand calls
+            kernel, broadcast = kernel.py_func, broadcast.py_func
+        out = broadcast(kernel, self.parameters, *(np.ravel(v) for v in arrays))
+        return tuple(row.reshape(arrays[0].shape) for row in out)
+
+    def torque(self, angle: ArrayLike, rate: ArrayLike = 0.0) -> Array:
+        """Torque [Nm] at a relative angle [rad] and rate [rad/s]."""
+        return self.evaluate(angle, rate)[0]
+
+    def tangent(self, angle: ArrayLike) -> Array:
+        """Slope of the torque [Nm/rad] at an angle [rad]."""
+        return self.evaluate(angle)[1]
+
+    def secant(self, centre: ArrayLike, amplitude: ArrayLike) -> Array:
+        """Stiffness of the chord [Nm/rad] across ``centre ± amplitude`` [rad]."""
+        centre, amplitude = np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float)
+        return np.asarray((self.torque(centre + amplitude) - self.torque(centre - amplitude)) / (2 * amplitude))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def hinges_torque(parameters: Array, angle: float, rate: float, memory: float) -> tuple[float, float, float, float]:
+    """f(φ) = k0 φ + Σ s Δk max(0, s (φ − g)); parameters are k0 followed by rows of (g, s, Δk)."""
+    torque, tangent = parameters[0] * angle, parameters[0]
+    for i in range(1, parameters.size, 3):
+        side, change = parameters[i + 1], parameters[i + 2]
+        beyond = side * (angle - parameters[i])
+        if beyond > 0.0:
+            torque += side * change * beyond
+            tangent += change
+    return torque, tangent, 0.0, memory
+
+
+@dataclass(frozen=True)
+class Hinges(Law):
+    """Every piecewise-linear law: stages, lash, clearances, stops, as a sum of hinges.
+
+    f(φ) = k0 φ + Σ_i s_i Δk_i max(0, s_i (φ − g_i)), with ``stiffness`` k0 [Nm/rad] and one hinge a (gap g [rad],
+    side s = ±1, change of stiffness Δk [Nm/rad]).  ``stops`` names the angles [rad] that are end stops.
+    Raises ModelError where the slope would be negative, since such a law stores no energy.
+
+    >>> law = Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6)
+    >>> float(law.torque(0.125)), float(law.tangent(0.2))
+    (1000.0, 24000.0)
+    """
+
+    stiffness: float
+    gaps: tuple[float, ...] = ()
+    sides: tuple[float, ...] = ()
+    changes: tuple[float, ...] = ()
+    stops: tuple[float, ...] = field(default=())
+
+    kernel: ClassVar[Callable[..., Any]] = hinges_torque
+
+    def __post_init__(self) -> None:
+        if not len(self.gaps) == len(self.sides) == len(self.changes):
+            raise ModelError("a hinge needs a gap, a side and a change of stiffness", found=repr(self))
+        values = np.array([self.stiffness, *self.gaps, *self.sides, *self.changes], dtype=float)
+        if not np.isfinite(values).all() or any(s not in (-1.0, 1.0) for s in self.sides):
+            raise ModelError("hinges need finite values and sides of +1 or -1", found=repr(self))
+        slope = self.tangent(self._between()).min()
+        if slope < -1e-9 * np.abs(values).max():
+            raise ModelError("the stiffness must not be negative", found=f"{slope:g} Nm/rad in one stage")
+
+    def _between(self) -> Array:
+        """One angle inside every segment, from left to right."""
+        edges = np.unique(self.gaps)
+        if not edges.size:
+            return np.zeros(1)
+        return np.concatenate([[edges[0] - 1.0], 0.5 * (edges[1:] + edges[:-1]), [edges[-1] + 1.0]])
+
+    @classmethod
+    def staged(
+        cls,
+        stages: Sequence[tuple[float, float]],
+        *,
+        coast: Sequence[tuple[float, float]] | None = None,
+        lash: float = 0.0,
+        stop_stiffness: float = 0.0,
+    ) -> Hinges:
+        """Stages as an engineer lists them: (up to this torque [Nm], stiffness [Nm/rad]), first to last.
+
+        ``lash`` is the whole free angle [rad], half to each side.  ``coast`` lists the stages for negative torque
+        (default: the same).  With ``stop_stiffness`` [Nm/rad] the last torque is where the stop is met; without it the
+        last stage goes on.
+
+        >>> Hinges.staged([(500.0, 1e4)], lash=0.02).torque([0.005, 0.02]).tolist()
+        [0.0, 100.0]
+        """
+        sides = (1.0, list(stages)), (-1.0, list(coast if coast is not None else stages))
+        plain = lash == 0 and sides[0][1][0][1] == sides[1][1][0][1]
+        base = float(sides[0][1][0][1]) if plain else 0.0
+        hinges: list[tuple[float, float, float]] = []
+        stops: list[float] = []
+        for side, listed in sides:
+            at, carried, before = 0.5 * lash, 0.0, base
+            for torque, stiffness in _checked_stages(listed):
+                if stiffness != before:
+                    hinges.append((side * at, side, stiffness - before))
+                at, carried, before = at + (torque - carried) / stiffness, torque, stiffness
+            if stop_stiffness > 0:
+                hinges.append((side * at, side, stop_stiffness - before))
+                stops.append(side * at)
+        gaps, signs, changes = zip(*hinges, strict=True) if hinges else ((), (), ())
+        return cls(base, gaps, signs, changes, tuple(sorted(stops)))
+
+    @property
+    def parameters(self) -> Array:
+        """k0, then (gap, side, change) of every hinge."""
+        rows = np.array([self.gaps, self.sides, self.changes], dtype=float)
+        return np.concatenate([[self.stiffness], rows.T.ravel()])
+
+    def stage(self, angle: ArrayLike) -> IntArray:
+        """Number of the segment that an angle [rad] lies in: 0 holds the angle zero, ±1 the next on either side."""
+        edges = np.unique(self.gaps)
+        middle = np.searchsorted(edges, 0.0)
+        return np.asarray(np.searchsorted(edges, np.asarray(angle, dtype=float)) - middle, dtype=np.int64)
+
+    def angle(self, torque: ArrayLike) -> Array:
+        """The relative angle [rad] at which a torque [Nm] is carried; in a free range, its middle.
+
+        Raises ModelError where no angle carries it (a last stage without stiffness).
+        """
+        torque = np.asarray(torque, dtype=float)
+        edges = np.unique([*self.gaps, 0.0])
+        at = self.torque(edges)
+        slope = self.tangent(np.array([edges[0] - 1.0, edges[-1] + 1.0]))
+        beyond = (torque < at[0]) & (slope[0] <= 0) | (torque > at[-1]) & (slope[1] <= 0)
+        if beyond.any():
+            raise ModelError("no angle carries this torque", found=f"{torque[beyond].flat[0]:g} Nm")
+        left, right = np.searchsorted(at, torque, "left"), np.searchsorted(at, torque, "right")
+        free = np.where(right > left, 0.5 * (edges[np.minimum(left, edges.size - 1)] + edges[right - 1]), np.nan)
+        return np.where(right > left, free, self._inside(torque, edges, at, slope, left))
+
+    def _inside(self, torque: Array, edges: Array, at: Array, slope: Array, index: IntArray) -> Array:
+        low, high = np.clip(index - 1, 0, None), np.clip(index, None, edges.size - 1)
+        rise = at[high] - at[low]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            within = edges[low] + (torque - at[low]) / rise * (edges[high] - edges[low])
+            below = edges[0] + (torque - at[0]) / slope[0]
+            above = edges[-1] + (torque - at[-1]) / slope[1]
+        return np.where(index == 0, below, np.where(index == edges.size, above, within))
+
+    def describing_function(self, centre: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
+        """Mean torque [Nm] and first-harmonic stiffness [Nm/rad] under φ = centre + amplitude cos ψ.
+
+        Closed form of the Fourier integrals over the time each hinge is engaged (Krylov and Bogoliubov's
+        equivalent linearisation; Magnus, Popp, Sextro: Schwingungen, 2016, ch. 3).
+
+        >>> mean, stiffness = Hinges.staged([(1e4, 1e4)], lash=0.02).describing_function(0.0, 0.01)
+        >>> float(stiffness)
+        0.0
+        """
+        centre, amplitude = np.broadcast_arrays(np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float))
+        mean, stiffness = self.stiffness * centre, np.full(centre.shape, self.stiffness)
+        for gap, side, change in zip(self.gaps, self.sides, self.changes, strict=True):
+            depth = side * (gap - centre)
+            half = np.arccos(np.clip(depth / amplitude, -1.0, 1.0))
+            mean = mean + side * change * (amplitude * np.sin(half) - depth * half) / np.pi
+            share = half + 0.5 * np.sin(2 * half) - 2 * depth / amplitude * np.sin(half)
+            stiffness = stiffness + change * share / np.pi
+        return mean, stiffness
+
+
+def _checked_stages(stages: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
+    """The stages, refused unless torques rise and stiffnesses are positive."""
+    carried = 0.0
+    for number, (torque, stiffness) in enumerate(stages):
+        if not stiffness > 0 or not np.isfinite(stiffness):
+            raise ModelError(
+                "a stage needs a positive stiffness", where=f"stages.{number}.stiffness", found=f"{stiffness:g} Nm/rad"
+            )
+        if not torque > carried:
+            raise ModelError(
+                "stages are listed with rising torques",
+                where=f"stages.{number}.up_to",
+                found=f"{torque:g} Nm",
+                allowed=f"more than {carried:g} Nm",
+            )
+        carried = torque
+    if not stages:
+        raise ModelError("at least one stage is needed", where="stages")
+    return stages

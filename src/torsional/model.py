@@ -1,0 +1,115 @@
+"""Model: what a model file describes, from which powertrains are made gear by gear."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from torsional.components import Component
+from torsional.engine import Engine
+from torsional.errors import ModelError, nearest
+from torsional.numerics.arrays import Array
+from torsional.powertrain import Powertrain
+
+RPM = np.pi / 30
+
+
+@dataclass(frozen=True)
+class Gear:
+    """One gear: its ``ratio`` and the ``components`` that stand in the line while it is engaged."""
+
+    ratio: float
+    components: Mapping[str, Component]
+
+
+@dataclass(frozen=True)
+class Operation:
+    """Where the machine runs: ``idle`` and ``speed`` (from, to) [rad/s]; ``torque`` (from, to) [Nm] or None for
+    zero to full load."""
+
+    idle: float = 600 * RPM
+    speed: tuple[float, float] = (600 * RPM, 2000 * RPM)
+    torque: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Landmarks:
+    """The user's names for the places that analyses ask for; empty where the machine has none.
+
+    ``throws``: nodes on which the cylinders act; ``crankshaft``: node that stands for the engine's speed; ``load``:
+    node where the mean torque is taken up; ``input``: the node to be kept quiet (gearbox input); ``springs``: the
+    absorber's connections; ``clutch``: the clutch damper.
+    """
+
+    throws: tuple[str, ...] = ()
+    crankshaft: str = ""
+    load: str = ""
+    input: str = ""
+    springs: tuple[str, ...] = ()
+    clutch: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A machine: ``components`` common to all gears, ``gears`` by name, engine, operating range, landmarks.
+
+    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies).
+    """
+
+    name: str
+    components: Mapping[str, Component]
+    landmarks: Landmarks
+    gears: Mapping[str, Gear] = field(default_factory=dict)
+    engine: Engine | None = None
+    operation: Operation = Operation()
+    absorber: str = ""
+    document: Mapping[str, Any] = field(default_factory=dict)
+    parts: int = 1
+
+    @property
+    def gear_names(self) -> tuple[str, ...]:
+        """The gears, first to last; one nameless gear where the model has none."""
+        return tuple(self.gears) or ("",)
+
+    @property
+    def top_gear(self) -> str:
+        """The last gear listed, the analyses' default."""
+        return self.gear_names[-1]
+
+    def powertrain(self, gear: str | int | None = None) -> Powertrain:
+        """The powertrain with one gear engaged (default: the last listed)."""
+        name = self.top_gear if gear is None else str(gear)
+        if name not in self.gear_names:
+            raise ModelError(f"there is no gear '{name}'", where="gear", remedy=nearest(name, self.gear_names))
+        engaged = self.gears[name].components if name else {}
+        return Powertrain([*self.components.items(), *engaged.items()], self.parts)
+
+    def speeds(self, count: int) -> Array:
+        """Evenly spaced mean speeds of the operating range [rad/s]."""
+        return np.linspace(*self.operation.speed, count)
+
+    def torques(self, count: int) -> Array:
+        """Evenly spaced mean torques [Nm]: the stated range, or up to the highest full-load torque."""
+        low, high = self.operation.torque or (0.0, self.full_load_peak())
+        return np.linspace(low, high, count)
+
+    def full_load_peak(self) -> float:
+        """The highest torque of the full-load curve [Nm]; raises ModelError without one."""
+        if self.engine is None or self.engine.full_load is None:
+            raise ModelError("the model has no full-load curve", where="engine.full_load", remedy="give operation.torque")
+        return float(np.max(self.engine.full_load.torques))
+
+    def replaced(self, **changes: Any) -> Model:
+        """A copy with some fields changed."""
+        return replace(self, **changes)
+
+    @property
+    def hash(self) -> str:
+        """Sixteen hexadecimal digits that tell this model from every other (of its document, or of its parts)."""
+        told = json.dumps(self.document, sort_keys=True, default=str) if self.document else repr(self)
+        return hashlib.sha256(told.encode()).hexdigest()[:16]

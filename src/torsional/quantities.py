@@ -1,0 +1,108 @@
+"""What an engineer reads off a result: functions from a Dataset or DataArray to a DataArray with its unit.
+
+Orders are complex 0-peak amplitudes X_n, the signal being x(t) = Re Σ_n X_n exp(i n Ω t).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from torsional.errors import ModelError
+from torsional.units import QUANTITIES
+
+SAMPLES = 1440
+"""Points over one cycle of 720° for signals put together from orders: half a degree."""
+
+
+def _as(values: xr.DataArray, quantity: str, **attrs: str) -> xr.DataArray:
+    entry = QUANTITIES[quantity]
+    told = {"units": entry.unit, "long_name": entry.long_name, "quantity": quantity, **attrs}
+    return values.rename(quantity).assign_attrs(told)
+
+
+def acceleration(angle: xr.DataArray) -> xr.DataArray:
+    """Angular acceleration orders −(nΩ)² θ_n [rad/s²], complex 0-peak, from angle orders over speed.
+
+    >>> theta = xr.DataArray([[1e-3 + 0j]], coords={"speed": [100.0], "order": [3.0]})
+    >>> acceleration(theta).values.real.tolist()
+    [[-90.0]]
+    """
+    return _as(-((angle.order * angle.speed) ** 2) * angle, "acceleration", amplitude="complex 0-peak")
+
+
+def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
+    """Speed fluctuation orders i nΩ θ_n [rad/s], complex 0-peak."""
+    return _as(1j * angle.order * angle.speed * angle, "angular_velocity", amplitude="complex 0-peak")
+
+
+def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
+    """The signal over one cycle of 720° crank angle, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``."""
+    alpha = xr.DataArray(np.arange(samples) * (4 * np.pi / samples), dims="crank_angle")
+    turns = np.exp(1j * orders.order * alpha)
+    signal: xr.DataArray = xr.dot(orders, turns, dim="order").real
+    return signal.assign_coords(crank_angle=alpha).assign_attrs({**orders.attrs, "amplitude": "signal"})
+
+
+def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
+    """Half the peak-to-peak swing of the signal over one cycle, phases kept."""
+    signal = waveform(orders, samples)
+    half = 0.5 * (signal.max("crank_angle") - signal.min("crank_angle"))
+    return half.assign_attrs({**orders.attrs, "amplitude": "half peak-to-peak over the cycle"})
+
+
+def bound(orders: xr.DataArray) -> xr.DataArray:
+    """Σ_n |X_n|: no signal with these orders swings further; it is a bound and not the swing."""
+    return abs(orders).sum("order").assign_attrs({**orders.attrs, "amplitude": "bound, sum of 0-peak orders"})
+
+
+def amplitude(orders: xr.DataArray, order: float) -> xr.DataArray:
+    """|X_n| of one order, 0-peak; raises ModelError for an order that was not computed."""
+    if float(order) not in orders.order.values:
+        known = ", ".join(f"{n:g}" for n in orders.order.values)
+        raise ModelError(f"order {order:g} was not computed", where="order", allowed=known)
+    return abs(orders.sel(order=float(order))).assign_attrs({**orders.attrs, "amplitude": "0-peak"})
+
+
+def irregularity(angle: xr.DataArray) -> xr.DataArray:
+    """Cyclic irregularity (ω_max − ω_min)/ω_mean [-] of nodes that turn at engine speed."""
+    return _as(2 * swing(angular_velocity(angle)) / angle.speed, "irregularity", amplitude="peak-to-peak over mean")
+
+
+def order_share(orders: xr.DataArray, order: float) -> xr.DataArray:
+    """Share [-] of one order in the oscillation's mean square, |X_n|² / Σ|X|²."""
+    power = abs(orders) ** 2
+    return _as(power.sel(order=float(order)) / power.sum("order"), "energy_share")
+
+
+def dominant_element(modes: xr.Dataset) -> xr.DataArray:
+    """The connection with the largest share of each mode's elastic energy, by name ("" for rigid rotation)."""
+    share = modes.elastic_share
+    names = share.element.values[share.values.argmax(axis=share.get_axis_num("element"))]
+    return xr.DataArray(np.where(modes.frequency.values > 0, names, ""), dims="mode", coords={"mode": modes.mode})
+
+
+def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[str]:
+    """A name for each mode by where its elastic energy is: the group with the largest share, else the connection.
+
+    ``groups``: {"DMF mode": ("dmf",), "clutch mode": ("clutch",)}; a mode is named after a group when the group's share
+    is the largest of all connections'.
+    """
+    dominant = dominant_element(modes).values
+    names = []
+    for mode, element in enumerate(dominant):
+        share = modes.elastic_share.isel(mode=mode)
+        known = [name for name, members in groups.items() if element in members]
+        together = {name: float(share.sel(element=list(members)).sum()) for name, members in groups.items() if members}
+        largest = max(together, key=lambda name: together[name], default="")
+        if element and largest and together[largest] > float(share.max()):
+            known = [largest]
+        names.append(known[0] if known else f"{element} mode" if element else "rigid rotation")
+    return names
+
+
+def order_speed(frequency: xr.DataArray, order: float) -> xr.DataArray:
+    """The engine speed [rad/s] at which an engine order meets a frequency [Hz]: Ω = 2π f/n (20 f rpm for the third)."""
+    return _as(2 * np.pi * frequency / order, "speed")

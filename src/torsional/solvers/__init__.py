@@ -1,0 +1,1 @@
+"""Analyses: one a file, each with one public function."""

@@ -1,0 +1,132 @@
+"""Order response over speed, mean torque and gear."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError, nearest
+from torsional.model import Model
+from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.results import dataset
+from torsional.solvers.harmonic import element_torques, response
+from torsional.solvers.operating import mean_state
+from torsional.system import System, assemble
+
+HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
+
+
+def response_map(
+    model: Model,
+    speed: ArrayLike | None = None,
+    torque: ArrayLike | None = None,
+    gears: Sequence[str | int] | None = None,
+    orders: ArrayLike = HALF_ORDERS,
+    *,
+    nodes: Sequence[str] | None = None,
+    elements: Sequence[str] | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> xr.Dataset:
+    """Order response of a ``model`` over ``speed`` [rad/s] × mean ``torque`` [Nm] × ``gears``.
+
+    Each mean torque has its own equilibrium and tangent stiffnesses.  Dimensions (gear, torque, speed, order): complex
+    0-peak ``angle`` [rad] at ``nodes`` (default: the model's landmarks) and ``torque_order`` [Nm] of ``elements``
+    (default: absorber springs and clutch); ``travel`` (gear, torque, element) [rad], the mean twist;
+    ``within_full_load`` (torque, speed); ``status`` (gear, torque, speed, order), 0 where solved, NaN stands where not.
+    ``progress(done, total)`` is called after each gear.  Raises ModelError for a model without an engine.
+    """
+    if model.engine is None:
+        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    speeds = np.atleast_1d(model.speeds(57) if speed is None else np.asarray(speed, dtype=float))
+    torques = np.atleast_1d(model.torques(26) if torque is None else np.asarray(torque, dtype=float))
+    names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
+    n = np.atleast_1d(np.asarray(orders, dtype=float))
+    excitation = model.engine.harmonics(speeds[None, :], torques[:, None], n)
+    loads = np.moveaxis(excitation, -2, -1).reshape(len(torques), -1, excitation.shape[-2])
+    cells = []
+    for done, gear in enumerate(names, 1):
+        cells.append(_one_gear(model, gear, speeds, torques, n, loads, _places(model, nodes, elements)))
+        progress(done, len(names))
+    angle, twist, travel, status = (np.stack(parts) for parts in zip(*cells, strict=True))
+    chosen = _places(model, nodes, elements)
+    grid = ("gear", "torque", "speed", "order")
+    return dataset(
+        {
+            "angle": ((*grid, "node"), angle, "angle"),
+            "torque_order": ((*grid, "element"), twist, "torque"),
+            "travel": (("gear", "torque", "element"), travel, "relative_angle"),
+            "status": (grid, status, ""),
+            "within_full_load": (("torque", "speed"), _within(model, speeds, torques), ""),
+        },
+        {
+            "gear": (np.array(names), ""),
+            "torque": (torques, "torque"),
+            "speed": (speeds, "speed"),
+            "order": (n, "engine_order"),
+            "node": (np.array(chosen[0]), ""),
+            "element": (np.array(chosen[1]), ""),
+        },
+        analysis="response map",
+        model=model.name,
+        model_hash=model.hash,
+        amplitude="complex 0-peak",
+    )
+
+
+def _places(model: Model, nodes: Sequence[str] | None, elements: Sequence[str] | None) -> tuple[list[str], list[str]]:
+    marks = model.landmarks
+    kept = nodes if nodes is not None else [marks.crankshaft, marks.input]
+    twisted = elements if elements is not None else [*marks.springs, marks.clutch]
+    return [node for node in dict.fromkeys(kept) if node], [name for name in dict.fromkeys(twisted) if name]
+
+
+def _within(model: Model, speeds: Array, torques: Array) -> Array:
+    engine = model.engine
+    if engine is None or engine.full_load is None:
+        return np.ones((len(torques), len(speeds)), dtype=bool)
+    return np.asarray(engine.within_full_load(speeds[None, :], torques[:, None]))
+
+
+def _one_gear(
+    model: Model,
+    gear: str,
+    speeds: Array,
+    torques: Array,
+    orders: Array,
+    loads: ComplexArray,
+    places: tuple[list[str], list[str]],
+) -> tuple[ComplexArray, ComplexArray, Array, IntArray]:
+    system = assemble(model.powertrain(gear))
+    state = mean_state(model, system, torques)
+    values = {"stiffness": state.stiffness}
+    turning, omega = np.repeat(speeds, len(orders)), np.outer(speeds, orders).ravel()
+    q, status = response(system, omega, turning, model.landmarks.throws, loads, values)
+    shape = (len(torques), len(speeds), len(orders), -1)
+    nodes = [system.node_index(node) for node in places[0]]
+    twisted = _elements(system, places[1])
+    angle = (q @ system.T[nodes].T).reshape(shape)
+    part = _picked(system, twisted)
+    told = {"stiffness": state.stiffness[:, twisted]}
+    torque = element_torques(part, omega, turning, q, told).reshape(shape)
+    return angle, torque, state.angle[:, twisted], status.reshape(shape[:-1])
+
+
+def _elements(system: System, names: list[str]) -> list[int]:
+    known = system.connections.names
+    for name in names:
+        if name not in known:
+            raise ModelError(f"there is no connection '{name}'", where=name, remedy=nearest(name, known))
+    return [known.index(name) for name in names]
+
+
+def _picked(system: System, index: list[int]) -> System:
+    """The system with some of its connections only, for their torques."""
+    c = system.connections
+    fields = ("weights", "stiffness", "damping", "loss_factor", "centrifugal_stiffness")
+    rows = {key: getattr(c, key)[index] for key in fields}
+    names, laws = tuple(c.names[i] for i in index), tuple(c.laws[i] for i in index)
+    return dataclasses.replace(system, connections=dataclasses.replace(c, names=names, laws=laws, **rows))

@@ -1,0 +1,98 @@
+"""Natural frequencies, mode shapes, energy shares; undamped and damped."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from torsional.numerics.arrays import Array
+from torsional.numerics.modal_kernel import Modes, modes
+from torsional.numerics.quadratic_eigen import damped_modes as quadratic_modes
+from torsional.results import dataset
+from torsional.solvers.checks import linear
+from torsional.system import System
+
+
+def modal(system: System, speed: float = 0.0) -> xr.Dataset:
+    """Undamped modes at a mean ``speed`` [rad/s], rigid rotations first, with their energies.
+
+    (K + Ω²S) φ = ω² M φ.  ``frequency`` (mode) [Hz]; ``shape`` (mode, node), largest angle one; ``elastic_share``
+    (mode, element) and ``kinetic_share`` (mode, mass), each summing to one over an elastic mode; ``damping_ratio``
+    (mode), the modal estimate ½ φᵀ(C/ω + H/ω²)φ, exact where damping does not couple modes.
+    Raises ModelError for a nonlinear system.
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> pair = {"a": Inertia(211.4), "b": Inertia(8.3), "s": Shaft("a", "b", 9.775e6)}
+    >>> modal(assemble(Powertrain(pair))).frequency.values.round(1)
+    array([  0. , 176.1])
+    """
+    linear(system)
+    system = system.switched(speed)
+    omega, shapes = _modes(system, speed)
+    c, m = system.connections, system.masses
+    with np.errstate(divide="ignore", invalid="ignore"):
+        elastic = _stiffness(system, speed)[:, None] * (c.weights @ shapes) ** 2 / omega**2
+        dissipated = c.damping[:, None] / omega + (c.stiffness * c.loss_factor)[:, None] / omega**2
+        ratio = 0.5 * np.sum((c.weights @ shapes) ** 2 * dissipated, axis=0)
+    elastic[:, omega == 0], ratio[omega == 0] = 0.0, 0.0
+    kinetic = m.inertia[:, None] * (m.weights @ shapes) ** 2
+    angles = system.T @ shapes
+    largest = angles[np.abs(angles).argmax(axis=0), np.arange(omega.size)]
+    return dataset(
+        {
+            "frequency": (("mode",), omega / (2 * np.pi), "frequency"),
+            "damping_ratio": (("mode",), ratio, "damping_ratio"),
+            "shape": (("mode", "node"), (angles / largest).T, "mode_shape"),
+            "elastic_share": (("mode", "element"), elastic.T, "energy_share"),
+            "kinetic_share": (("mode", "mass"), kinetic.T, "energy_share"),
+        },
+        {
+            "mode": (np.arange(omega.size), ""),
+            "node": (np.array(system.nodes), ""),
+            "element": (np.array(c.names), ""),
+            "mass": (np.array(m.names), ""),
+        },
+        analysis="modal",
+        mean_speed=float(speed),
+    )
+
+
+def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
+    """Damped modes at a mean ``speed`` [rad/s]: (M λ² + C λ + K + Ω²S) φ = 0, without loss factors.
+
+    ``frequency`` |λ|/2π [Hz], ``damping_ratio`` −Re λ/|λ| (1 where overdamped), ``eigenvalue`` λ [1/s] and complex
+    ``shape`` (mode, node), largest angle one; rigid rotations first.
+    """
+    linear(system)
+    system = system.switched(speed)
+    c, m, stiffness = system.connections, system.masses, _stiffness(system, speed)
+    found = quadratic_modes(c.weights, stiffness, c.weights, c.damping, m.weights, m.inertia)
+    angles = system.T @ found.shapes
+    largest = angles[np.abs(angles).argmax(axis=0), np.arange(found.eigenvalues.size)]
+    return dataset(
+        {
+            "frequency": (("mode",), found.omega / (2 * np.pi), "frequency"),
+            "damping_ratio": (("mode",), found.damping_ratio, "damping_ratio"),
+            "eigenvalue": (("mode",), found.eigenvalues, "eigenvalue"),
+            "shape": (("mode", "node"), (angles / largest).T, "mode_shape"),
+        },
+        {"mode": (np.arange(found.eigenvalues.size), ""), "node": (np.array(system.nodes), "")},
+        analysis="damped modes",
+        mean_speed=float(speed),
+    )
+
+
+def natural_frequencies(system: System, speed: float = 0.0) -> Array:
+    """Undamped angular frequencies [rad/s] of a linear system at a mean ``speed`` [rad/s], ascending."""
+    return _modes(system.switched(speed), speed).omega
+
+
+def _stiffness(system: System, speed: float) -> Array:
+    return np.asarray(system.connections.stiffness + speed**2 * system.connections.centrifugal_stiffness)
+
+
+def _modes(system: System, speed: float) -> Modes:
+    stiffness = _stiffness(system, speed)
+    return modes(system.connections.weights, stiffness, system.masses.weights, system.masses.inertia)

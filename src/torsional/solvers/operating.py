@@ -1,0 +1,40 @@
+"""The linear system of a model in one gear under a mean engine torque."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.solvers.equilibrium import OperatingPoint, equilibrium, linearize
+from torsional.system import System, assemble
+
+
+def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoint:
+    """Equilibrium of a model's ``system`` under mean engine ``torque`` [Nm] (any shape), shared by the throws alike.
+
+    Raises ModelError where the model does not say where torque enters (throws) and is taken up (load).
+    """
+    marks = model.landmarks
+    if not marks.throws or not marks.load:
+        raise ModelError(
+            "the model does not say where the mean torque enters and is taken up",
+            where="landmarks",
+            remedy="name landmarks.throws (or an engine block) and landmarks.load",
+        )
+    share = np.asarray(torque, dtype=float) / len(marks.throws)
+    return equilibrium(system, dict.fromkeys(marks.throws, share), hold=marks.load)
+
+
+def operated(model: Model, torque: float, gear: str | int | None = None) -> tuple[System, OperatingPoint]:
+    """The linear system about the mean engine ``torque`` [Nm] in one ``gear``, and that operating point.
+
+    A model without any law needs no landmarks: its system is linear as it is.
+    """
+    system = assemble(model.powertrain(gear))
+    if not system.elements and not (model.landmarks.throws and model.landmarks.load):
+        shape = np.zeros(len(system.connections.names))
+        return system, OperatingPoint(system.connections.names, shape, shape, system.connections.stiffness)
+    point = mean_state(model, system, float(torque))
+    return linearize(system, point), point
