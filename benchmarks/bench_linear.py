@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import chain15
 import numpy as np
+import ours
 import peers
 import pytest
 
@@ -46,6 +47,14 @@ def test_l3_modes(contender, timed, declared):
     K = peers.stiffness_matrices(stiffness)
     values, vectors = timed(lambda: find(inertia, K), task="L3", contender=contender, cases=count, rounds=3)
     _check_modes(values, vectors, inertia, K)
+
+
+def test_l3_modes_torsional(timed):
+    inertia, stiffness = chain15.designs(DESIGNS)
+    values, vectors = timed(
+        lambda: ours.modes(inertia, stiffness), task="L3", contender="torsional, modes", cases=DESIGNS, rounds=3
+    )
+    _check_modes(values, vectors, inertia, peers.stiffness_matrices(stiffness))
 
 
 def test_l3_modes_opentorsion(timed):

@@ -84,7 +84,7 @@ def modules_page(names: Iterable[str]) -> str:
 
 def process_docstring(_app: Any, _what: str, _name: str, _obj: Any, _options: Any, lines: list[str]) -> None:
     """Autodoc's hook: replace the lines of a docstring in place."""
-    lines[:] = restructured("\n".join(lines)).splitlines() + [""]
+    lines[:] = [*restructured("\n".join(lines)).splitlines(), ""]
 
 
 def restructured(text: str) -> str:
