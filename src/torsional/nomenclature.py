@@ -135,7 +135,6 @@ CANONICAL: dict[str, dict[str, float]] = {
     "frequency": {"Hz": 1.0, "kHz": 1e3},
     "rate": {"1/s": 1.0},
     "time": _TIME,
-    "rate": {"1/s": 1.0},
     "velocity": {"m/s": 1.0, "km/h": 1 / 3.6},
     "power": {"W": 1.0, "kW": 1e3, "MW": 1e6, "PS": 735.49875, "hp": 745.6998715822702},
     "energy": {"J": 1.0, "kJ": 1e3, "MJ": 1e6, "kWh": 3.6e6},
