@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import chain15
 import numpy as np
+from ledger import Floor
 
 
 def powertrain():
@@ -12,11 +15,73 @@ def powertrain():
 
     parts = {name: Inertia(float(J)) for name, J in zip(chain15.NODES, chain15.INERTIA, strict=True)}
     for i, (a, b) in enumerate(zip(chain15.NODES, chain15.NODES[1:], strict=False)):
-        parts[f"{a}-{b}"] = Shaft(a, b, float(chain15.STIFFNESS[i]), float(chain15.DAMPING[i]))
+        parts[f"shaft_{i}"] = Shaft(a, b, float(chain15.STIFFNESS[i]), float(chain15.DAMPING[i]))
     for node, damping in zip(chain15.NODES, chain15.GROUND_DAMPING, strict=True):
         if damping:
-            parts[f"{node}-bearing"] = Damper(node, damping=float(damping))
+            parts[f"bearing_{node}"] = Damper(node, damping=float(damping))
     return Powertrain(parts)
+
+
+def excitation():
+    """The firing torques at all speeds."""
+    from torsional import Excitation
+
+    throws = chain15.torque()[chain15.THROWS]
+    loads = np.broadcast_to(throws, (chain15.RPM.size, *throws.shape))
+    return Excitation([chain15.NODES[i] for i in chain15.THROWS], chain15.ORDERS, chain15.RPM * np.pi / 30.0, loads)
+
+
+def public_response() -> Callable[[], tuple[np.ndarray, np.ndarray]]:
+    """`harmonic_response` with its dataset, the system assembled beforehand."""
+    from torsional import assemble, harmonic_response
+
+    system, loads = assemble(powertrain()), excitation()
+    shafts = [system.connections.names.index(f"shaft_{i}") for i in range(chain15.STIFFNESS.size)]
+    assert system.nodes == chain15.NODES
+
+    def respond():
+        result = harmonic_response(system, loads)
+        return result.angle.values, result.torque.values[..., shafts]
+
+    return respond
+
+
+def kernel_response() -> Callable[[], tuple[np.ndarray, np.ndarray]]:
+    """The same by the elimination's own call, arrays in and out, the plan made beforehand."""
+    from torsional.numerics.elimination import EliminationPlan
+
+    nodes, difference = chain15.INERTIA.size, chain15.matrices().difference
+    grounded = np.flatnonzero(chain15.GROUND_DAMPING)
+    weights = np.vstack([difference, np.eye(nodes)[grounded]])
+    stiffness = np.concatenate([chain15.STIFFNESS, np.zeros(grounded.size)])
+    damping = np.concatenate([chain15.DAMPING, chain15.GROUND_DAMPING[grounded]])
+    none, omega = np.zeros(stiffness.size), chain15.frequencies().ravel()
+    turning = np.repeat(chain15.RPM * np.pi / 30.0, chain15.ORDERS.size)
+    loads = np.tile(chain15.torque()[chain15.THROWS], chain15.RPM.size).T[:, None, :]
+    plan = EliminationPlan.build(weights, np.eye(nodes))
+    shape = (chain15.RPM.size, chain15.ORDERS.size, -1)
+
+    def respond():
+        q, _ = plan.solve(
+            stiffness, none, damping, none, chain15.INERTIA, omega, turning, chain15.THROWS, loads,
+            connection_weights=weights, mass_weights=np.eye(nodes),
+        )  # fmt: skip
+        angle = q[:, 0, :]
+        twist = angle[:, 1:] - angle[:, :-1]
+        torque = (chain15.STIFFNESS + 1j * omega[:, None] * chain15.DAMPING) * twist
+        return angle.reshape(shape), torque.reshape(shape)
+
+    return respond
+
+
+def response_floor(nodes: int = 15) -> Floor:
+    """Real operations and bytes of one solve of a chain: what no program can leave out.
+
+    Values: k + iωc and −ω²J + iωc, 3 a node.  Elimination of a node: pivot 2, reciprocal 7, transfer 6, row sum 8, load
+    8; back substitution 14.  Torque of a shaft: 8.  Angles and torques are written once, complex.
+    """
+    per_node = 3 + 2 + 7 + 6 + 8 + 8 + 14
+    return Floor(flops=per_node * nodes + 8 * (nodes - 1), bytes=16 * (2 * nodes - 1))
 
 
 def modes(inertia: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
