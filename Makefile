@@ -52,7 +52,8 @@ check: lint types imports examples docs test  ## everything CI runs
 bench: $(BENCH_VENV)/.installed-bench  ## time this project beside its peers, in an environment of their own
 	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini benchmarks
 
-constraints: | python-version  ## pin anew: names and versions from a fresh environment, into constraints.txt
+constraints:  ## pin anew: names and versions from a fresh environment, into constraints.txt
+	@$(check_python)
 	rm -rf .venv-pins
 	$(PYTHON) -m venv .venv-pins
 	.venv-pins/bin/python -m pip install --quiet --retries 10 '.[test,lint,docs,bench]' hatchling editables $(PEERS)
@@ -67,22 +68,27 @@ clean:  ## remove what was built, the environments too
 
 PEERS := opentorsion
 
-.PHONY: python-version
-python-version:
-	@command -v $(PYTHON) > /dev/null || { echo "There is no '$(PYTHON)' here: install Python 3.11 or newer, or name one, as in: make demo PYTHON=python3.12"; exit 1; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "torsional needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V 2>&1): name another, as in: make demo PYTHON=python3.12"; exit 1; }
+# Asked only when an environment is made: one that is there has the Python it was made with.
+define check_python
+command -v $(PYTHON) > /dev/null || { echo "There is no '$(PYTHON)' here: install Python 3.11 or newer, or name one, as in: make demo PYTHON=python3.12"; exit 1; }; \
+$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "torsional needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V 2>&1): name another, as in: make demo PYTHON=python3.12"; exit 1; }
+endef
 
-$(VENV)/bin/python $(BENCH_VENV)/bin/python: | python-version
-	@$(PYTHON) -m venv $(@D)/.. || { echo "'$(PYTHON)' cannot make a virtual environment; on Debian and Ubuntu install python3-venv."; rm -rf $(@D)/..; exit 1; }
+$(VENV)/bin/python $(BENCH_VENV)/bin/python:
+	@$(check_python)
+	@$(PYTHON) -m venv $(@:/bin/python=) || { echo "'$(PYTHON)' cannot make a virtual environment; on Debian and Ubuntu install python3-venv."; rm -rf $(@:/bin/python=); exit 1; }
 
 $(VENV)/.installed-run: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/python $(PIP_INSTALL) -e .
+	@echo "Installing torsional into $(VENV) ..."
+	@$(BIN)/python $(PIP_INSTALL) -e .
 	@touch $@
 
 $(VENV)/.installed-test $(VENV)/.installed-lint $(VENV)/.installed-docs: $(VENV)/.installed-%: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(BIN)/python $(PIP_INSTALL) -e '.[$*]'
+	@echo "Installing torsional and what '$*' needs into $(VENV) ..."
+	@$(BIN)/python $(PIP_INSTALL) -e '.[$*]'
 	@touch $@ $(VENV)/.installed-run
 
 $(BENCH_VENV)/.installed-bench: pyproject.toml constraints.txt | $(BENCH_VENV)/bin/python
-	$(BENCH_VENV)/bin/python $(PIP_INSTALL) -e '.[test,bench]' $(PEERS)
+	@echo "Installing torsional and its peers into $(BENCH_VENV) ..."
+	@$(BENCH_VENV)/bin/python $(PIP_INSTALL) -e '.[test,bench]' $(PEERS)
 	@touch $@
