@@ -13,9 +13,13 @@ author = "The torsional developers"
 copyright = "2026, The torsional developers"
 release = generate.release()
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx.ext.viewcode"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "mathml"]
+html_math_renderer = "mathml"
+myst_update_mathjax = False
 exclude_patterns = ["_build", "jupyter_execute"]
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["formulas.css"]
 html_title = f"torsional {release}"
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
