@@ -137,14 +137,16 @@ class Hinges(Law):
         >>> Hinges.staged([(500.0, 1e4)], lash=0.02).torque([0.005, 0.02]).tolist()
         [0.0, 100.0]
         """
-        sides = (1.0, list(stages)), (-1.0, list(coast if coast is not None else stages))
+        sides = [
+            (s, _checked_stages(given)) for s, given in ((1.0, stages), (-1.0, stages if coast is None else coast))
+        ]
         plain = lash == 0 and sides[0][1][0][1] == sides[1][1][0][1]
         base = float(sides[0][1][0][1]) if plain else 0.0
         hinges: list[tuple[float, float, float]] = []
         stops: list[float] = []
         for side, listed in sides:
             at, carried, before = 0.5 * lash, 0.0, base
-            for torque, stiffness in _checked_stages(listed):
+            for torque, stiffness in listed:
                 if stiffness != before:
                     hinges.append((side * at, side, stiffness - before))
                 at, carried, before = at + (torque - carried) / stiffness, torque, stiffness
@@ -214,6 +216,8 @@ class Hinges(Law):
 
 def _checked_stages(stages: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
     """The stages, refused unless torques rise and stiffnesses are positive."""
+    if not stages:
+        raise ModelError("at least one stage is needed", where="stages")
     carried = 0.0
     for number, (torque, stiffness) in enumerate(stages):
         if not stiffness > 0 or not np.isfinite(stiffness):
@@ -228,6 +232,4 @@ def _checked_stages(stages: Sequence[tuple[float, float]]) -> Sequence[tuple[flo
                 allowed=f"more than {carried:g} Nm",
             )
         carried = torque
-    if not stages:
-        raise ModelError("at least one stage is needed", where="stages")
     return stages

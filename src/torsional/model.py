@@ -101,7 +101,9 @@ class Model:
     def full_load_peak(self) -> float:
         """The highest torque of the full-load curve [Nm]; raises ModelError without one."""
         if self.engine is None or self.engine.full_load is None:
-            raise ModelError("the model has no full-load curve", where="engine.full_load", remedy="give operation.torque")
+            raise ModelError(
+                "the model has no full-load curve", where="engine.full_load", remedy="give operation.torque"
+            )
         return float(np.max(self.engine.full_load.torques))
 
     def replaced(self, **changes: Any) -> Model:

@@ -11,10 +11,11 @@ import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.units import QUANTITIES
 
-SAMPLES = 1440
-"""Points over one cycle of 720° for signals put together from orders: half a degree."""
+SAMPLES = 720
+"""Points over one cycle of 720° for signals put together from orders: the peak of order n is met to 3.8e-5 n²."""
 
 
 def _as(values: xr.DataArray, quantity: str, **attrs: str) -> xr.DataArray:
@@ -39,18 +40,32 @@ def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
 
 
 def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
-    """The signal over one cycle of 720° crank angle, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``."""
-    alpha = xr.DataArray(np.arange(samples) * (4 * np.pi / samples), dims="crank_angle")
-    turns = np.exp(1j * orders.order * alpha)
-    signal: xr.DataArray = xr.dot(orders, turns, dim="order").real
-    return signal.assign_coords(crank_angle=alpha).assign_attrs({**orders.attrs, "amplitude": "signal"})
+    """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle`` α [rad]."""
+    alpha = np.arange(samples) * (4 * np.pi / samples)
+    rest = [dim for dim in orders.dims if dim != "order"]
+    values = orders.transpose(*rest, "order")
+    signal = _synthesized(values.values, np.outer(values.order.values, alpha))
+    coords = {dim: orders.coords[dim] for dim in rest if dim in orders.coords} | {"crank_angle": alpha}
+    attrs = {**orders.attrs, "amplitude": "signal"}
+    return xr.DataArray(signal, dims=(*rest, "crank_angle"), coords=coords, name=orders.name, attrs=attrs)
+
+
+def _synthesized(values: ComplexArray, phase: Array) -> Array:
+    """Re (values @ exp(i phase)) in real arithmetic."""
+    return np.asarray(values.real @ np.cos(phase) - values.imag @ np.sin(phase))
 
 
 def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     """Half the peak-to-peak swing of the signal over one cycle, phases kept."""
-    signal = waveform(orders, samples)
-    half = 0.5 * (signal.max("crank_angle") - signal.min("crank_angle"))
-    return half.assign_attrs({**orders.attrs, "amplitude": "half peak-to-peak over the cycle"})
+    rest = [dim for dim in orders.dims if dim != "order"]
+    values = orders.transpose(*rest, "order")
+    phase = np.outer(values.order.values, np.arange(samples) * (4 * np.pi / samples))
+    flat = values.values.reshape(-1, values.sizes["order"])
+    parts = [np.ptp(_synthesized(flat[i : i + 1024], phase), axis=1) for i in range(0, len(flat), 1024)]
+    half = 0.5 * np.concatenate(parts).reshape([values.sizes[dim] for dim in rest])
+    coords = {dim: orders.coords[dim] for dim in rest if dim in orders.coords}
+    attrs = {**orders.attrs, "amplitude": "half peak-to-peak over the cycle"}
+    return xr.DataArray(half, dims=rest, coords=coords, name=orders.name, attrs=attrs)
 
 
 def bound(orders: xr.DataArray) -> xr.DataArray:

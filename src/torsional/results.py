@@ -21,7 +21,11 @@ COMPLEX = "real_imaginary"
 
 
 def dataset(
-    variables: Mapping[str, Variable], coordinates: Mapping[str, tuple[Any, str]], *, analysis: str, **provenance: object
+    variables: Mapping[str, Variable],
+    coordinates: Mapping[str, tuple[Any, str]],
+    *,
+    analysis: str,
+    **provenance: object,
 ) -> xr.Dataset:
     """A Dataset whose every variable carries its unit and long name from the nomenclature.
 

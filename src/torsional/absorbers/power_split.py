@@ -6,7 +6,7 @@ import math
 
 from torsional.absorbers.base import Absorber
 from torsional.components import Component, Coupling, Inertia, PlanetSpin, Superposition
-from torsional.components.checks import nonzero
+from torsional.components.checks import number
 from torsional.errors import ModelError
 from torsional.laws import Law
 
@@ -25,7 +25,7 @@ def power_split_absorber(
     """Bodies 1 primary, 2 secondary, 3 planets, 4 output [kgm²]; springs between 1 and 2.
 
     θ3 = (1 − g) θ1 + g θ2 and θ4 = (1 − r) θ1 + r θ2 with ``planet_ratio`` g and ``gear_quotient``
-    r = (θ4 − θ1)/(θ2 − θ1) in (0, 1]; the springs carry the share r of the output torque.  The planets' orbiting
+    r = (θ4 − θ1)/(θ2 − θ1), 0 < r ≤ 1; the springs carry the share r of the output torque.  The planets' orbiting
     mass belongs to the body that carries them.  After Fischer et al. (VDI, Friedrichshafen, 2013); Wramner
     (Chalmers, 2020, §2.2.2).
 
@@ -33,13 +33,12 @@ def power_split_absorber(
     >>> power_split_absorber(1.8, 0.5, 0.02, 1.2, Hinges(20e3), planet_ratio=2.5, gear_quotient=0.6).output
     'output'
     """
-    nonzero(gear_quotient, "gear_quotient", "gear_ratio")
-    if not 0 < gear_quotient < 1:
+    if not 0 < number(gear_quotient, "gear_quotient", "gear_ratio") <= 1:
         raise ModelError(
-            "the gear quotient of a power split absorber lies between 0 and 1",
+            "the gear quotient of a power split absorber is above 0 and at most 1",
             where="gear_quotient",
             found=f"{gear_quotient:g}",
-            remedy="a quotient of 1 is the planetary dual mass flywheel; a quotient q > 1 of other authors is 1/r",
+            remedy="a quotient above 1 of other authors is 1/r",
         )
     components: dict[str, Component] = {
         "primary": Inertia(primary_inertia),

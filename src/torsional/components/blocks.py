@@ -94,7 +94,9 @@ def clutch(flywheel: str, law: Law, *, inertia: float, damping: float = 0.0, hub
     }
 
 
-def gearbox(ratio: float, *, input_inertia: float, mesh_inertia: float, output_inertia: float, stiffness: float) -> Parts:
+def gearbox(
+    ratio: float, *, input_inertia: float, mesh_inertia: float, output_inertia: float, stiffness: float
+) -> Parts:
     """A gearbox in one gear: ``gearbox_input`` –``gearbox``– ``gearbox_mesh`` (input speed), then ``ratio`` to the
     ``gearbox_output`` (output speed); inertias [kgm²] at their own speeds, ``stiffness`` [Nm/rad] at input speed.
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
-from torsional.numerics.elimination import SINGULAR, EliminationPlan
+from torsional.numerics.elimination import EliminationPlan, Status
 from torsional.results import dataset
 from torsional.solvers.checks import linear
 from torsional.solvers.modal import natural_frequencies
@@ -50,7 +50,11 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
     return dataset(
         {
             "angle": (("speed", "order", "node"), node_angles(system, q).reshape(grid), "angle"),
-            "torque": (("speed", "order", "element"), element_torques(system, omega, turning, q).reshape(grid), "torque"),
+            "torque": (
+                ("speed", "order", "element"),
+                element_torques(system, omega, turning, q).reshape(grid),
+                "torque",
+            ),
         },
         {
             "speed": (speed, "speed"),
@@ -157,7 +161,7 @@ def element_torques(
 
 def _refuse_singular(system: System, status: IntArray, omega: Array, speed: Array) -> None:
     """Name the mode that is met without damping, or the rigid body at standstill."""
-    where = np.flatnonzero(status == SINGULAR)
+    where = np.flatnonzero(status == Status.SINGULAR)
     if not where.size:
         return
     at = float(omega[where[0]])

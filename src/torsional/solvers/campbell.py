@@ -1,0 +1,183 @@
+"""Interference (Campbell) analysis: natural frequencies over speed in every gear, and where engine orders meet them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.results import dataset
+from torsional.solvers.modal import modal, natural_frequencies
+from torsional.solvers.operating import operated
+from torsional.system import System
+
+CANDIDATES = np.arange(0.5, 12.5, 0.5)
+NOTABLE = 0.05
+
+
+def campbell(
+    model: Model,
+    torque: float | None = None,
+    gears: Sequence[str | int] | None = None,
+    speeds: ArrayLike | None = None,
+    orders: Sequence[float] | None = None,
+) -> xr.Dataset:
+    """Natural frequencies of a ``model`` over engine speed in every gear, and the speeds at which orders meet them.
+
+    The system is linearised about the mean engine ``torque`` [Nm] (default: `typical_torque`); ``speeds`` [rad/s]
+    (default: up to the highest of the operating range); ``orders`` (default: `engine_orders`).  ``frequency`` [Hz] and
+    ``damping_ratio`` (gear, speed, mode), ``elastic_share`` (gear, speed, mode, element); ``crossing``
+    (gear, mode, order) [rad/s], the speed with n Ω = 2π f(Ω), NaN where there is none: for a mode that does not depend
+    on speed wherever it lies, else the lowest among the speeds.  Raises ModelError as `equilibrium` does.
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> from torsional.model import Landmarks
+    >>> pair = {"a": Inertia(211.4), "b": Inertia(8.3), "s": Shaft("a", "b", 9.775e6)}
+    >>> met = campbell(Model("pair", pair, Landmarks()), orders=[3.0]).crossing.isel(gear=0, mode=1, order=0)
+    >>> round(float(met) * 30 / np.pi, 1)  # rpm: 20 f for the third order
+    3521.7
+    """
+    mean = typical_torque(model) if torque is None else float(torque)
+    names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
+    at = _speeds(model) if speeds is None else np.atleast_1d(np.asarray(speeds, dtype=float))
+    n = np.asarray(engine_orders(model) if orders is None else orders, dtype=float)
+    lines = [_line(operated(model, mean, gear or None)[0], at, n) for gear in names]
+    elements = list(dict.fromkeys(element for line in lines for element in line.elements))
+    count = max(line.frequency.shape[1] for line in lines)
+    return dataset(
+        {
+            "frequency": (("gear", "speed", "mode"), _stacked([l.frequency for l in lines], count, 1), "frequency"),
+            "damping_ratio": (("gear", "speed", "mode"), _stacked([l.damping for l in lines], count, 1), "damping_ratio"),
+            "elastic_share": (("gear", "speed", "mode", "element"), _shares(lines, elements, count), "energy_share"),
+            "crossing": (("gear", "mode", "order"), _stacked([l.crossing for l in lines], count, 0), "speed"),
+        },
+        {
+            "gear": (np.array(names), ""),
+            "speed": (at, "speed"),
+            "mode": (np.arange(count), ""),
+            "order": (n, "engine_order"),
+            "element": (np.array(elements), ""),
+        },
+        analysis="campbell",
+        model=model.name,
+        model_hash=model.hash,
+        mean_torque=mean,
+    )
+
+
+def typical_torque(model: Model) -> float:
+    """Mean engine torque [Nm] for modes: the full-load curve's highest, else the operating range's, else zero."""
+    if model.engine is not None and model.engine.full_load is not None:
+        return model.full_load_peak()
+    return float(model.operation.torque[1]) if model.operation.torque else 0.0
+
+
+def engine_orders(model: Model, count: int = 4) -> tuple[float, ...]:
+    """The strongest orders of the torques of all cylinders together, strongest first; the first is the main order.
+
+    Judged by the mean amplitude over the operating range at full load (without a curve: at `typical_torque`); orders
+    below a twentieth of the main one are left out.  A model without an engine has none.
+
+    >>> from torsional.engine import CrankLayout, Engine
+    >>> from torsional.model import Landmarks
+    >>> engine = Engine(bore=0.131, stroke=0.158, rod_length=0.2675, reciprocating_mass=4.2, compression_ratio=18.1,
+    ...                 layout=CrankLayout.inline((1, 5, 3, 6, 2, 4)))
+    >>> engine_orders(Model("six", {}, Landmarks(), engine=engine))[:2]
+    (3.0, 6.0)
+    """
+    if model.engine is None:
+        return ()
+    speeds = model.speeds(15)
+    torque = full_load(model, speeds)
+    size = np.abs(model.engine.harmonics(speeds, torque, CANDIDATES).sum(axis=-2)).mean(axis=0)
+    ranked = np.argsort(-size, kind="stable")[:count]
+    return tuple(float(CANDIDATES[i]) for i in ranked if size[i] >= NOTABLE * size[ranked[0]])
+
+
+def full_load(model: Model, speeds: Array) -> Array:
+    """Mean torque [Nm] at full load at each speed [rad/s]; without a curve `typical_torque` at each.
+
+    Raises ModelError where the curve does not reach a speed.
+    """
+    if model.engine is not None and model.engine.full_load is not None:
+        return np.asarray(model.engine.full_load_torque(speeds))
+    return np.full(np.shape(speeds), typical_torque(model))
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """One gear: frequency and damping (speed, mode), shares (speed, mode, element), crossings (mode, order)."""
+
+    elements: tuple[str, ...]
+    frequency: Array
+    damping: Array
+    shares: Array
+    crossing: Array
+
+
+def _speeds(model: Model) -> Array:
+    highest = model.operation.speed[1]
+    return np.linspace(highest / 40, highest, 40)
+
+
+def _line(system: System, speeds: Array, orders: Array) -> _Line:
+    """Speed matters only to pendulums and to switched inertias: without them one solution holds everywhere."""
+    steady = not system.connections.centrifugal_stiffness.any() and not any(system.masses.switches)
+    found = [modal(system, float(speed)) for speed in (speeds[:1] if steady else speeds)]
+    repeats = (len(speeds) // len(found), 1)
+    frequency, damping = (np.tile([m[key].values for m in found], repeats) for key in ("frequency", "damping_ratio"))
+    shares = np.tile([m.elastic_share.values for m in found], (*repeats, 1))
+    return _Line(
+        system.connections.names, frequency, damping, shares, _crossings(system, speeds, frequency, orders)
+    )
+
+
+def _crossings(system: System, speeds: Array, frequency: Array, orders: Array) -> Array:
+    met = np.full((frequency.shape[1], len(orders)), np.nan)
+    for mode, over in enumerate(2 * np.pi * frequency.T):
+        for i, order in enumerate(orders):
+            if over.max() > 0:
+                met[mode, i] = over[0] / order if np.ptp(over) == 0 else _met(system, speeds, over, mode, order)
+    return met
+
+
+def _met(system: System, speeds: Array, omega: Array, mode: int, order: float) -> float:
+    """The lowest speed at which an order meets a mode whose frequency depends on speed."""
+
+    def gap(speed: float) -> float:
+        return float(natural_frequencies(system, speed)[mode]) - order * speed
+
+    over = omega - order * speeds
+    turns = np.flatnonzero(np.sign(over[1:]) * np.sign(over[:-1]) < 0)
+    if not turns.size:
+        return float("nan")
+    low, high = float(speeds[turns[0]]), float(speeds[turns[0] + 1])
+    try:
+        return float(brentq(gap, low, high, xtol=1e-9 * high))
+    except ValueError as error:  # the same modes by another count of rigid ones
+        raise ModelError("the speed at which an order meets a mode was not found", found=str(error)) from None
+
+
+def _stacked(values: Sequence[Array], count: int, axis: int) -> Array:
+    """Gears together, padded with NaN where one has fewer modes."""
+    padded = []
+    for value in values:
+        widths = [(0, count - value.shape[axis]) if i == axis else (0, 0) for i in range(value.ndim)]
+        padded.append(np.pad(value, widths, constant_values=np.nan))
+    return np.stack(padded)
+
+
+def _shares(lines: Sequence[_Line], elements: Sequence[str], count: int) -> Array:
+    """Energy shares of all gears over the union of their connections."""
+    stacked = np.zeros((len(lines), len(lines[0].shares), count, len(elements)))
+    for share, line in zip(stacked, lines, strict=True):
+        columns = [elements.index(name) for name in line.elements]
+        share[:, : line.shares.shape[1], columns] = line.shares
+    return stacked
