@@ -69,9 +69,9 @@ class Ledger:
     titles: dict[str, str] = field(default_factory=dict)
 
     def ours(self, work: str) -> float | None:
-        """This project's best time at a piece of work, or None where it was not timed."""
+        """This project's time at a piece of work by its public function, which is entered first; None without one."""
         times = [e.seconds for e in self.entries if e.work == work and e.contender.startswith(OURS)]
-        return min(times, default=None)
+        return next(iter(times), None)
 
     def rows(self, machine: Machine) -> list[dict[str, object]]:
         """The entries with ratios: ``times_ours`` to this project, ``times_floor`` to the counted floor."""

@@ -46,30 +46,22 @@ def public_response() -> Callable[[], tuple[np.ndarray, np.ndarray]]:
     return respond
 
 
-def kernel_response() -> Callable[[], tuple[np.ndarray, np.ndarray]]:
-    """The same by the elimination's own call, arrays in and out, the plan made beforehand."""
+def kernel_response() -> Callable[[], tuple[np.ndarray]]:
+    """The angles alone, by the elimination's own call: arrays in and out, the plan made beforehand."""
     from torsional.numerics.elimination import EliminationPlan
 
     nodes, difference = chain15.INERTIA.size, chain15.matrices().difference
     grounded = np.flatnonzero(chain15.GROUND_DAMPING)
-    weights = np.vstack([difference, np.eye(nodes)[grounded]])
     stiffness = np.concatenate([chain15.STIFFNESS, np.zeros(grounded.size)])
     damping = np.concatenate([chain15.DAMPING, chain15.GROUND_DAMPING[grounded]])
-    none, omega = np.zeros(stiffness.size), chain15.frequencies().ravel()
-    turning = np.repeat(chain15.RPM * np.pi / 30.0, chain15.ORDERS.size)
+    omega, speed = chain15.frequencies().ravel(), np.repeat(chain15.RPM * np.pi / 30.0, chain15.ORDERS.size)
     loads = np.tile(chain15.torque()[chain15.THROWS], chain15.RPM.size).T[:, None, :]
-    plan = EliminationPlan.build(weights, np.eye(nodes))
-    shape = (chain15.RPM.size, chain15.ORDERS.size, -1)
+    plan = EliminationPlan.build(np.vstack([difference, np.eye(nodes)[grounded]]), np.eye(nodes))
+    shape = (chain15.RPM.size, chain15.ORDERS.size, nodes)
 
     def respond():
-        q, _ = plan.solve(
-            stiffness, none, damping, none, chain15.INERTIA, omega, turning, chain15.THROWS, loads,
-            connection_weights=weights, mass_weights=np.eye(nodes),
-        )  # fmt: skip
-        angle = q[:, 0, :]
-        twist = angle[:, 1:] - angle[:, :-1]
-        torque = (chain15.STIFFNESS + 1j * omega[:, None] * chain15.DAMPING) * twist
-        return angle.reshape(shape), torque.reshape(shape)
+        x, _ = plan.solve(stiffness, None, damping, None, chain15.INERTIA, omega, speed, chain15.THROWS, loads)
+        return (x[0, :, 0].reshape(shape),)
 
     return respond
 
