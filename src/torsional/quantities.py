@@ -40,7 +40,7 @@ def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
 
 
 def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
-    """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle`` α [rad]."""
+    """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``."""
     alpha = np.arange(samples) * (4 * np.pi / samples)
     rest = [dim for dim in orders.dims if dim != "order"]
     values = orders.transpose(*rest, "order")

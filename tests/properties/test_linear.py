@@ -16,7 +16,7 @@ from torsional.absorbers import (
     tuned_flange_flywheel,
     tuned_secondary_flywheel,
 )
-from torsional.components import Component, Coupling, Inertia, Shaft
+from torsional.components import Component, Coupling, GearPair, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.laws import Hinges
 from torsional.numerics.modal_kernel import count_below
@@ -102,8 +102,6 @@ def test_referring_through_a_gear(net: Network, share: float, ratio: float) -> N
         inertias=tuple(j / ratio**2 for j in net.inertias),
         shafts=tuple((a, b, k / ratio**2, c / ratio**2) for a, b, k, c in net.shafts),
     )
-    from torsional.components import GearPair
-
     front: dict[str, Component] = {
         "front": Inertia(1.0),
         "pinion": Inertia(0.5),

@@ -16,7 +16,9 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import natural_frequencies
 from torsional.system import assemble
 
-CASES: list[dict[str, Any]] = json.loads(gzip.open(Path(__file__).with_name("networks.json.gz")).read())
+CASES: list[dict[str, Any]] = json.loads(
+    gzip.decompress(Path(__file__).with_name("networks.json.gz").read_bytes())
+)
 
 
 def network(case: dict[str, Any]) -> Network:

@@ -7,10 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from scipy.integrate import quad
-from scipy.special import ellipk
-
 from torsional.absorbers.base import Absorber
 from torsional.components import checks
 from torsional.errors import ModelError
@@ -92,6 +88,9 @@ def tuning_order(path: Path, order: float, distance: float, amplitude: float) ->
     >>> round(tuning_order("circular", 3.0, 0.1, rho * math.radians(30)) / 3.0, 8)
     0.98288908
     """
+    from scipy.integrate import quad  # imported where used: scipy takes longer to import than a whole modal analysis
+    from scipy.special import ellipk
+
     if path == "circular":
         swing = amplitude * (1 + order**2) / distance
         return order * math.pi / (2 * float(ellipk(math.sin(swing / 2) ** 2)))
@@ -115,6 +114,8 @@ def squared_distance(path: Path, order: float, distance: float, arc: float) -> f
 
     λ = 0 circle, 1 cycloid, n/sqrt(1 + n²) the epicycloid, which is the tautochrone R² = c² − n² s².
     """
+    from scipy.integrate import quad
+
     rho = distance / (1 + order**2)
     if path == "tautochrone":
         return distance**2 - order**2 * arc**2
@@ -125,7 +126,7 @@ def squared_distance(path: Path, order: float, distance: float, arc: float) -> f
 
     along = quad(lambda s: math.cos(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
     inwards = quad(lambda s: math.sin(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
-    return float(np.hypot(along, distance - inwards) ** 2)
+    return float(along**2 + (distance - inwards) ** 2)
 
 
 def with_pendulum(absorber: Absorber, pendulum: CentrifugalPendulum) -> Absorber:

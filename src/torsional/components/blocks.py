@@ -44,8 +44,8 @@ def crankshaft(
     """Throws ``throw1`` … joined by ``crank1`` …, the last shaft going to the node ``flange``.
 
     ``throw_inertia`` [kgm²] with half the reciprocating share; ``stiffness`` between throws [Nm/rad], relative
-    ``damping`` [Nms/rad], ``absolute_damping`` of each throw [Nms/rad]; ``before``: the node at the free end (the hub of
-    a torsional damper) on a shaft of ``before_stiffness``.
+    ``damping`` [Nms/rad], ``absolute_damping`` of each throw [Nms/rad]; ``before``: the node at the free end (the hub
+    of a torsional damper) on a shaft of ``before_stiffness``.
 
     >>> sorted(crankshaft(2, 0.1, 1e6, flange="flywheel", flange_stiffness=2e6))
     ['crank1', 'crank2', 'throw1', 'throw2']
@@ -126,7 +126,7 @@ def driveline(
     shaft_damping: float = 0.0,
     half_shaft_damping: float = 0.0,
 ) -> Parts:
-    """Propeller shaft, axle, final drive, half shafts, wheels and tyres up to ``vehicle``; every value at its own speed.
+    """Propeller shaft, axle, final drive, half shafts, wheels, tyres and ``vehicle``; every value at its own speed.
 
     >>> parts = driveline(shaft_stiffness=1.2e5, axle_inertia=0.3, final_drive_ratio=2.85, half_shaft_stiffness=1e5,
     ...     wheel_inertia=70.0, tyre_stiffness=1.6e5, tyre_damping=1500.0, vehicle=Vehicle(40e3, 0.5))

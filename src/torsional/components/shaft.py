@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -115,7 +116,7 @@ class DistributedShaft:
         stiffness = self.shear_modulus * self.polar_moment / step
         sixth = self.density * self.polar_moment * step / 6
         nodes = [self.a, *(f"{name}.{i}" for i in range(1, self.elements)), self.b]
-        for i, (left, right) in enumerate(zip(nodes, nodes[1:], strict=False), 1):
+        for i, (left, right) in enumerate(itertools.pairwise(nodes), 1):
             part = f"{name}.{i}"
             yield Connection(part, {left: -1.0, right: 1.0}, stiffness, loss_factor=self.loss_factor)
             yield Mass(f"{part}.left", {left: 1.0}, sixth)

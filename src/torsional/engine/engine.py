@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from torsional.engine.checks import finite, positive, within
 from torsional.engine.combustion import CombustionCycle
@@ -27,12 +27,16 @@ from torsional.engine.orders import (
     checked_orders,
     crank_angle_grid,
     half_order_series,
+    periodic_spline,
     picked,
 )
 from torsional.engine.points import MeanTorque, OperatingPoints
 from torsional.engine.slider_crank import SliderCrank
 from torsional.engine.unequal import check_deactivated, check_heat_spread
 from torsional.errors import ModelError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 SEALED_EXPONENT = 1.35
 FASTEST_PISTON = 30.0
@@ -141,10 +145,7 @@ class Engine:
 
     @cached_property
     def _shape_splines(self) -> CubicSpline:
-        shapes = self.pressure_shapes.shapes
-        return CubicSpline(
-            np.append(crank_angle_grid(), CYCLE), np.column_stack([shapes, shapes[:, 0]]), axis=1, bc_type="periodic"
-        )
+        return periodic_spline(np.append(crank_angle_grid(), CYCLE), self.pressure_shapes.shapes)
 
     # operating points
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from torsional.errors import ModelError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -74,3 +78,10 @@ def half_order_series(samples: ArrayLike) -> ComplexArray:
 def picked(series: ComplexArray, orders: Sequence[float] | FloatArray) -> ComplexArray:
     """The columns of a half-order series that belong to the (checked) orders."""
     return np.asarray(series[..., np.round(2.0 * np.asarray(orders)).astype(int)])
+
+
+def periodic_spline(knots: FloatArray, rows: FloatArray) -> CubicSpline:
+    """Cubic spline over one cycle through ``rows`` (series, samples), whose first sample closes the cycle at the last knot."""
+    from scipy.interpolate import CubicSpline  # imported where used: order analyses do without scipy
+
+    return CubicSpline(knots, np.column_stack([rows, rows[:, 0]]), axis=1, bc_type="periodic")

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from torsional.engine.checks import finite, positive
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
-from torsional.engine.orders import CYCLE, SAMPLES, FloatArray, crank_angle_grid
+from torsional.engine.orders import CYCLE, SAMPLES, FloatArray, crank_angle_grid, periodic_spline
 from torsional.engine.trace_file import read_table
 from torsional.errors import ModelError
 
@@ -98,7 +97,7 @@ class PressureTrace:
         angle, values = _unwrapped(angle, values)
         cycles, kept = _whole_cycles(angle)
         knots = np.append(angle[kept], angle[0] + cycles * CYCLE) + finite(offset, "offset", "rad")
-        spline = CubicSpline(knots, np.column_stack([values[:, kept], values[:, 0]]), axis=1, bc_type="periodic")
+        spline = periodic_spline(knots, values[:, kept])
         grid = crank_angle_grid() + CYCLE * np.arange(cycles)[:, None]
         return cls(spline(grid).mean(axis=1), own_angle)
 
@@ -130,7 +129,7 @@ class PressureTrace:
         rows = self.pressure
         if count > 1 and not self.own_angle:
             knots = np.append(crank_angle_grid(), CYCLE)
-            spline = CubicSpline(knots, np.column_stack([rows, rows[:, 0]]), axis=1, bc_type="periodic")
+            spline = periodic_spline(knots, rows)
             shifted = np.mod(crank_angle_grid() + firing_angles[:, None], CYCLE)
             rows = np.array([spline(angles)[number] for number, angles in enumerate(shifted)])
         for number, row in enumerate(rows, 1):

@@ -33,9 +33,9 @@ class OperatingPoint:
 def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> OperatingPoint:
     """Mean twist of every connection under mean ``torques`` {node: Nm}, taken up at the node ``hold``.
 
-    K q + Σ w f(w·q) = u with uᵀ1 = 0: the torque at ``hold`` balances the others through the speed ratios, never a soft
-    ground spring.  Torques may be arrays of one shape.  Where statics alone fix the torques (no two spring paths side by
-    side) each law is inverted exactly, in a free range to its middle; else Newton's method.
+    K q + Σ w f(w·q) = u with uᵀ1 = 0: the torque at ``hold`` balances the others through the speed ratios, never a
+    soft ground spring.  Torques may be arrays of one shape.  Where statics alone fix the torques (no two spring paths
+    side by side) each law is inverted exactly, in a free range to its middle; else Newton's method.
     Raises ModelError for unknown nodes and for torques that no spring can carry.
 
     >>> from torsional.components import Inertia, Shaft
