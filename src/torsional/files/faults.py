@@ -1,0 +1,109 @@
+"""The findings of the schema as errors that teach: key path with line, what was found, what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, get_args
+
+from pydantic import ValidationError
+
+from torsional.errors import ModelError, nearest
+from torsional.files.reader import Tree
+from torsional.units import quoted
+
+SHOWN = 5
+_WANTED = {
+    "model_type": "a block of keys is wanted",
+    "model_attributes_type": "a block of keys is wanted",
+    "dict_type": "a block of keys is wanted",
+    "list_type": "a list is wanted",
+    "string_type": "a text is wanted",
+    "int_type": "a whole number is wanted",
+    "bool_type": "true or false is wanted",
+    "float_type": "a number is wanted",
+}
+
+
+class SchemaError(ModelError):
+    """Several findings at once; its own parts are those of the first."""
+
+    def __init__(self, errors: Sequence[ModelError], file: str = "") -> None:
+        first = errors[0]
+        super().__init__(
+            first.problem, where=first.where, found=first.found, allowed=first.allowed, remedy=first.remedy, file=file
+        )
+        self.errors = tuple(errors)
+
+    def __str__(self) -> str:
+        head = f"{self.file}: " if self.file else ""
+        lines = [f"  {error}" for error in self.errors[:SHOWN]]
+        more = len(self.errors) - SHOWN
+        lines += [f"  and {more} more"] if more > 0 else []
+        return "\n".join([f"{head}{len(self.errors)} things are not right", *lines])
+
+    def located(self, *, file: str = "", prefix: str = "") -> ModelError:
+        """The same findings with the file named and the key paths prefixed."""
+        return SchemaError([error.located(prefix=prefix) for error in self.errors], file or self.file)
+
+
+def translated(error: ValidationError, tree: Tree) -> ModelError:
+    """The schema's findings, one ModelError or several in one."""
+    found = [_one(dict(detail), tree) for detail in error.errors(include_url=False)]
+    return found[0].located(file=tree.file) if len(found) == 1 else SchemaError(found, tree.file)
+
+
+def _one(detail: dict[str, Any], tree: Tree) -> ModelError:
+    path = _path(detail["loc"], tree.data)
+    inner = detail.get("ctx", {}).get("error")
+    if isinstance(inner, ModelError):
+        where = ".".join(part for part in (path, inner.where) if part)
+        return ModelError(
+            inner.problem, where=tree.place(where), found=inner.found, allowed=inner.allowed, remedy=inner.remedy
+        )
+    return _sentence(detail, path, tree)
+
+
+def _sentence(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
+    kind, context = str(detail["type"]), detail.get("ctx", {})
+    if kind == "union_tag_not_found":
+        where, allowed = tree.place(path), _listed(context.get("expected_tags", ""))
+        return ModelError("the key 'type' is missing", where=where, allowed=allowed)
+    if kind == "union_tag_invalid":
+        known = _tags(path)
+        tag = str(context.get("tag", ""))[:64]
+        return ModelError(
+            "there is no such type", where=tree.place(f"{path}.type"), found=quoted(tag), remedy=nearest(tag, known)
+        )
+    found = quoted(detail["input"])
+    if kind == "literal_error":
+        return ModelError(
+            "is none of the choices", where=tree.place(path), found=found, allowed=_listed(context["expected"])
+        )
+    problem = _WANTED.get(kind, str(detail["msg"])[:1].lower() + str(detail["msg"])[1:])
+    return ModelError(problem, where=tree.place(path), found=found)
+
+
+def _listed(expected: object) -> str:
+    return str(expected).replace("'", "")
+
+
+def _tags(path: str) -> list[str]:
+    from torsional.files.schema import absorber, parts
+
+    union = absorber.Absorber if path == "absorber" else parts.Part
+    members = get_args(get_args(union)[0])
+    return [tag for member in members for tag in get_args(member.model_fields["type"].annotation)]
+
+
+def _path(location: Sequence[int | str], data: Any) -> str:
+    """The key path of a finding: the location without the type names that choose among blocks."""
+    parts: list[str] = []
+    for step in location:
+        if isinstance(data, dict) and step not in data and data.get("type") == step:
+            continue
+        parts.append(str(step))
+        try:
+            data = data[step]
+        except (KeyError, IndexError, TypeError):
+            data = None
+    return ".".join(parts)

@@ -1,0 +1,191 @@
+"""Components by name: the parts of a machine that no block describes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from torsional.errors import ModelError
+from torsional.files.schema.absorber import PendulumFields, SwitchBlock
+from torsional.files.schema.fields import (
+    Block,
+    Damping,
+    Inertia,
+    InertiaOrNone,
+    Length,
+    LossFactor,
+    Mass,
+    Node,
+    Number,
+    Quantity,
+    Ratio,
+    Stiffness,
+)
+from torsional.files.schema.springs import Spring, check_spring
+from torsional.laws import Hinges
+
+
+class Between(Block):
+    """What connects node a with node b."""
+
+    a: Node
+    b: Node
+
+    @model_validator(mode="after")
+    def _distinct(self) -> Between:
+        if self.a == self.b:
+            problem, remedy = "the component connects a node with itself", "name two different nodes"
+            raise ModelError(problem, where="b", found=repr(self.b), remedy=remedy)
+        return self
+
+
+class InertiaPart(Block):
+    """A rigid disc."""
+
+    type: Literal["inertia"]
+    inertia: Inertia
+    node: Node | None = Field(None, description="where it sits; a node of its own name where none is given")
+
+
+class VehiclePart(Block):
+    """A translating mass at the wheel."""
+
+    type: Literal["vehicle"]
+    mass: Mass
+    rolling_radius: Length
+    node: Node | None = None
+
+
+class ShaftPart(Between):
+    """A torsion spring with damping; a tyre is the same by another name."""
+
+    type: Literal["shaft", "tyre"]
+    stiffness: Stiffness
+    damping: Damping = 0.0
+    loss_factor: LossFactor = 0.0
+
+
+class DamperPart(Block):
+    """A viscous damper, absolute where b is left out."""
+
+    type: Literal["damper"]
+    a: Node
+    b: Node = "ground"
+    damping: Annotated[float, Quantity("damping", above=0)]
+
+
+class HingeRow(Block):
+    """A change of stiffness beyond an angle."""
+
+    angle: Annotated[float, Quantity("relative_angle")]
+    side: Literal[1, -1] = Field(description="1: acts above the angle, -1: below")
+    change: Annotated[float, Quantity("stiffness")]
+
+
+class HingesBlock(Block):
+    """A piecewise-linear law hinge by hinge."""
+
+    stiffness: Annotated[float, Quantity("stiffness")]
+    changes: list[HingeRow] = Field([])
+    stops: Annotated[list[float], Quantity("relative_angle", shape="list")] | None = None
+
+    def law(self) -> Hinges:
+        """The law itself."""
+        rows = self.changes
+        angles, changes = tuple(row.angle for row in rows), tuple(row.change for row in rows)
+        return Hinges(self.stiffness, angles, tuple(float(row.side) for row in rows), changes, tuple(self.stops or ()))
+
+
+class CouplingPart(Between, Spring):
+    """A connection with stages, lash and stop."""
+
+    type: Literal["coupling"]
+    damping: Damping = 0.0
+    hinges: HingesBlock | None = Field(None, description="the law hinge by hinge, instead of stiffness or stages")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> CouplingPart:
+        if self.hinges is None:
+            check_spring(self)
+        elif self.model_fields_set & set(Spring.model_fields):
+            raise ModelError("hinges stand for the whole law", where="hinges", remedy="remove stiffness and stages")
+        return self
+
+    def law(self) -> Hinges:
+        """The law from stages or hinges."""
+        return self.hinges.law() if self.hinges else super().law()
+
+
+class GearPairPart(Between):
+    """Two meshing gears."""
+
+    type: Literal["gear_pair"]
+    ratio: Ratio
+
+
+class PlanetaryGearPart(Block):
+    """An epicyclic set."""
+
+    type: Literal["planetary_gear"]
+    sun: Node
+    ring: Node
+    carrier: Node
+    standing_ratio: Ratio = Field(description="i0 = −z_ring/z_sun of the simple set")
+    planet_inertia: InertiaOrNone = Field(0.0, description="spin inertia of all planets")
+    planet_ratio: Ratio = Field(1.0, description="z_sun/z_planet")
+
+
+class SuperpositionPart(Block):
+    """A gear train by its ratio alone: θ_node = (1 − r) θ_a + r θ_b."""
+
+    type: Literal["superposition"]
+    node: Node
+    a: Node
+    b: Node
+    ratio: Number
+
+
+class PlanetSpinPart(Between):
+    """Planet wheels that turn with (1 − g) θ_a + g θ_b."""
+
+    type: Literal["planet_spin"]
+    ratio: Number
+    inertia: InertiaOrNone
+    switch: SwitchBlock | None = None
+
+
+class DistributedShaftPart(Between):
+    """A uniform shaft in finite elements."""
+
+    type: Literal["distributed_shaft"]
+    length: Length
+    outer_diameter: Length
+    inner_diameter: Annotated[float, Quantity("length", least=0)] = 0.0
+    elements: Annotated[int, Field(ge=1, le=500)] = 10
+    shear_modulus: Annotated[float, Quantity("shear_modulus", above=0)] = 80e9
+    density: Annotated[float, Quantity("density", above=0)] = 7850.0
+    loss_factor: LossFactor = 0.0
+
+
+class PendulumPart(PendulumFields):
+    """A centrifugal pendulum; its node has the component's name."""
+
+    type: Literal["centrifugal_pendulum"]
+    carrier: Node
+
+
+Part = Annotated[
+    InertiaPart
+    | VehiclePart
+    | ShaftPart
+    | DamperPart
+    | CouplingPart
+    | GearPairPart
+    | PlanetaryGearPart
+    | SuperpositionPart
+    | PlanetSpinPart
+    | DistributedShaftPart
+    | PendulumPart,
+    Field(discriminator="type"),
+]
