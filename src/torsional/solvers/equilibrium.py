@@ -95,7 +95,7 @@ def _balanced(system: System, torques: Mapping[str, ArrayLike], hold: str) -> Ar
 def _carrying(system: System) -> Array:
     """Connections that can carry a mean torque: dampers and pendulums cannot."""
     c = system.connections
-    return (c.stiffness > 0) | np.array([law is not None for law in c.laws], dtype=bool)
+    return np.asarray((c.stiffness > 0) | np.array([law is not None for law in c.laws], dtype=bool))
 
 
 def _angles(system: System, index: int, torque: Array) -> Array:

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.numerics.arrays import Array, ComplexArray, StatusArray
 from torsional.numerics.elimination import EliminationPlan, Status
+from torsional.numerics.factor_products import factor_products
 from torsional.results import dataset
 from torsional.solvers.checks import linear
 from torsional.solvers.modal import natural_frequencies
@@ -74,7 +75,7 @@ def response(
     nodes: Sequence[str],
     torque: ComplexArray,
     values: Mapping[str, ArrayLike] | None = None,
-) -> tuple[ComplexArray, IntArray]:
+) -> tuple[ComplexArray, StatusArray]:
     """Coordinates q (…, frequencies, coordinates) and a status for each case, by the compiled elimination.
 
     ``omega`` and ``speed`` (frequencies,) [rad/s]; ``torque`` (frequencies, nodes), or with a leading axis of designs.
@@ -98,6 +99,8 @@ def response(
 
 def _switch_states(system: System, speed: Array) -> list[tuple[float, np.ndarray[tuple[int], np.dtype[np.bool_]]]]:
     """Groups of speeds at which every switched inertia has one value: a speed of the group, and its members."""
+    if not any(system.masses.switches):
+        return [(float(speed[0]), np.ones(speed.size, dtype=bool))]
     state = np.zeros(speed.size, dtype=np.int64)
     for switch in system.masses.switches:
         if switch is not None:
@@ -112,12 +115,10 @@ def _solved(
     nodes: Sequence[str],
     torque: ComplexArray,
     values: Mapping[str, ArrayLike] | None,
-) -> tuple[ComplexArray, IntArray]:
+) -> tuple[ComplexArray, StatusArray]:
     c, m, own = system.connections, system.masses, dict(values or {})
     plan = EliminationPlan.build(c.weights, m.weights)
-    onto = np.array([system.T[system.node_index(node)] for node in nodes])
-    loaded = np.flatnonzero(onto.any(axis=0))
-    loads = torque @ onto[:, loaded]
+    loaded, loads = _loads(system, nodes, torque)
     q, status = plan.solve(
         own.get("stiffness", c.stiffness),
         own.get("loss_factor", c.loss_factor),
@@ -132,6 +133,16 @@ def _solved(
         mass_weights=m.weights,
     )
     return q[..., 0, :], status
+
+
+def _loads(system: System, nodes: Sequence[str], torque: ComplexArray) -> tuple[tuple[int, ...], ComplexArray]:
+    """Loaded coordinates and the torques on them, Tᵀu without the coordinates that nothing loads."""
+    onto = np.array([system.T[system.node_index(node)] for node in nodes])
+    loaded = tuple(int(i) for i in np.flatnonzero(onto.any(axis=0)))
+    first = np.abs(onto).argmax(axis=1)
+    if np.count_nonzero(onto) == len(nodes) == len(loaded) and (onto[np.arange(len(nodes)), first] == 1).all():
+        return tuple(int(i) for i in first), torque
+    return loaded, np.asarray(torque @ onto[:, list(loaded)])
 
 
 def node_angles(system: System, q: ComplexArray) -> ComplexArray:
@@ -151,15 +162,13 @@ def element_torques(
 ) -> ComplexArray:
     """Torque of each connection [Nm], (k(1 + iη) + iωc + Ω²s) w·q: the one definition, damper share included."""
     c, own = system.connections, dict(values or {})
-    stiffness = np.asarray(own.get("stiffness", c.stiffness))[..., np.newaxis, :]
-    damping = np.asarray(own.get("damping", c.damping))[..., np.newaxis, :]
-    loss = np.asarray(own.get("loss_factor", c.loss_factor))[..., np.newaxis, :]
-    lift = np.asarray(own.get("centrifugal_stiffness", c.centrifugal_stiffness))[..., np.newaxis, :]
-    factor = stiffness * (1 + 1j * loss) + 1j * omega[:, np.newaxis] * damping + speed[:, np.newaxis] ** 2 * lift
-    return np.asarray(factor * (q @ c.weights.T))
+    k, eta, damping, lift = (
+        own.get(key, getattr(c, key)) for key in ("stiffness", "loss_factor", "damping", "centrifugal_stiffness")
+    )
+    return factor_products(q, c.weights, k, eta, damping, lift, omega, speed)
 
 
-def _refuse_singular(system: System, status: IntArray, omega: Array, speed: Array) -> None:
+def _refuse_singular(system: System, status: StatusArray, omega: Array, speed: Array) -> None:
     """Name the mode that is met without damping, or the rigid body at standstill."""
     where = np.flatnonzero(status == Status.SINGULAR)
     if not where.size:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError, nearest
 from torsional.model import Model
-from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.numerics.arrays import Array, ComplexArray, StatusArray
 from torsional.results import dataset
 from torsional.solvers.harmonic import element_torques, response
 from torsional.solvers.operating import mean_state
@@ -99,7 +99,7 @@ def _one_gear(
     orders: Array,
     loads: ComplexArray,
     places: tuple[list[str], list[str]],
-) -> tuple[ComplexArray, ComplexArray, Array, IntArray]:
+) -> tuple[ComplexArray, ComplexArray, Array, StatusArray]:
     system = assemble(model.powertrain(gear))
     state = mean_state(model, system, torques)
     values = {"stiffness": state.stiffness}
