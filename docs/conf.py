@@ -28,6 +28,7 @@ nb_execution_mode = "auto"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_merge_streams = True
+nb_output_stderr = "warn"  # a page that warns its reader is not finished
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
