@@ -17,9 +17,12 @@ _HOMES = {
     "Tyre Vehicle",
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
     "errors": "ModelError TorsionalError",
+    "files": "changed expanded load_model",
     "laws": "Hinges Law",
     "model": "Gear Landmarks Model Operation",
     "powertrain": "Powertrain",
+    "quantities": "acceleration amplitude angular_velocity bound dominant_element irregularity named_modes order_share "
+    "order_speed swing waveform",
     "results": "load_results save_results",
     "solvers.equilibrium": "OperatingPoint equilibrium linearize",
     "solvers.harmonic": "harmonic_response",

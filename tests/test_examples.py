@@ -1,0 +1,41 @@
+"""Every example runs, and one number of each is asserted."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXPECTED: dict[str, dict[Any, float]] = {
+    # 768.6/20 Hz: third-order speed 769 rpm of the clutch mode, by an independent prototype
+    "01_first_look": {"clutch_mode": 38.43},
+    # the stiffer the damper the higher the mode; 654 rpm at 25 kNm/rad by an independent prototype
+    "02_softer_clutch": {25.0: 654.1},
+    "03_parts_by_hand": {"500 Nm": 12.10, "1500 Nm": 19.21},
+    "04_two_flywheels_compared": {"median": 0.16},
+}
+
+
+@pytest.fixture(autouse=True)
+def _at_the_root(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+
+
+def test_every_example_is_expected() -> None:
+    assert sorted(path.stem for path in (ROOT / "examples").glob("*.py")) == sorted(EXPECTED)
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found = module.main()
+    for key, value in EXPECTED[name].items():
+        assert found[key] == pytest.approx(value, rel=0.02 if name.startswith("04") else 5e-4)
+    assert capsys.readouterr().out.strip()
