@@ -16,6 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import faces
+
 PACKAGE = "torsional"
 
 
@@ -26,11 +28,15 @@ def release() -> str:
 
 def write_all(folder: Path) -> None:
     """Write every generated page into ``folder``, which is emptied first."""
+    from torsional.cli.app import command
+    from torsional.files.schema.document import json_schema
     from torsional.units import QUANTITIES
 
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "nomenclature.md").write_text(nomenclature(QUANTITIES), encoding="utf-8")
+    (folder / "command_line.md").write_text(faces.command_line_page(command()), encoding="utf-8")
+    (folder / "model_file.md").write_text(faces.model_file_page(json_schema()), encoding="utf-8")
     names = list(module_names(PACKAGE))
     for name in names:
         (folder / f"{name}.md").write_text(module_page(name), encoding="utf-8")

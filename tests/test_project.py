@@ -16,6 +16,8 @@ import pytest
 from ruamel.yaml import YAML
 
 import torsional
+from torsional.cli.app import command
+from torsional.files.schema.document import json_schema
 from torsional.units import QUANTITIES
 
 ROOT = Path(__file__).parent.parent
@@ -157,10 +159,32 @@ def test_every_module_has_a_floor() -> None:
 # --- documentation ---
 
 
-def test_nomenclature_page_lists_every_quantity() -> None:
-    page = loaded(ROOT / "docs" / "generate.py").nomenclature(QUANTITIES)
+@pytest.fixture
+def generate(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    return loaded(ROOT / "docs" / "generate.py")
+
+
+def test_nomenclature_page_lists_every_quantity(generate: ModuleType) -> None:
+    page = generate.nomenclature(QUANTITIES)
     for name, quantity in QUANTITIES.items():
         assert f"| {quantity.symbol} | `{name}` | {quantity.long_name} | {quantity.unit} |" in page
+
+
+def test_every_command_and_option_is_described(generate: ModuleType) -> None:
+    program = command()
+    page = generate.faces.command_line_page(program)
+    for name, sub in program.commands.items():
+        assert f"## `torsional {name}`" in page and sub.help
+        assert [p.name for p in sub.params if p.name != "help" and not p.help] == []
+
+
+def test_model_file_page_tells_units_limits_and_defaults(generate: ModuleType) -> None:
+    page = generate.faces.model_file_page(json_schema())
+    assert "| `secondary_inertia` | kgm² > 0 | required |" in page
+    assert "| `absolute_damping` | Nm s/rad ≥ 0, or a list | `0.0` | of each throw, to ground |" in page
+    links = set(re.findall(r"\(#(block-[a-z-]+)\)", page))
+    assert links <= set(re.findall(r"^\((block-[a-z-]+)\)=$", page, re.MULTILINE))
 
 
 @pytest.mark.parametrize(
@@ -175,8 +199,8 @@ def test_nomenclature_page_lists_every_quantity() -> None:
         ("* one\n  more\n* two", "* one more\n* two"),
     ],
 )
-def test_docstrings_are_plain_text(plain: str, written: str) -> None:
-    assert loaded(ROOT / "docs" / "generate.py").restructured(plain) == written
+def test_docstrings_are_plain_text(generate: ModuleType, plain: str, written: str) -> None:
+    assert generate.restructured(plain) == written
 
 
 # --- the data of the benchmarks ---
