@@ -146,7 +146,7 @@ def _planetary(b: schema.PlanetaryDualMassFlywheel) -> Absorber:
 
 
 def _power_split(b: schema.PowerSplit) -> Absorber:
-    return absorbers.power_split_absorber(
+    made = absorbers.power_split_absorber(
         b.primary_inertia,
         b.secondary_inertia,
         b.planet_inertia,
@@ -155,6 +155,10 @@ def _power_split(b: schema.PowerSplit) -> Absorber:
         planet_ratio=b.planet_ratio,
         gear_quotient=b.gear_quotient,
         damping=b.damping,
+    )
+    renamed = {"gear": "power_split"}  # the gearbox has a "gear" too
+    return dataclasses.replace(
+        made, components={renamed.get(name, name): part for name, part in made.components.items()}
     )
 
 

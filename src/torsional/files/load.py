@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from torsional.engine import Engine
 from torsional.engine.excitation import checked_nodes
 from torsional.errors import ModelError, nearest
 from torsional.files.blocks import Machine, machine
@@ -62,10 +63,16 @@ def validated(tree: Tree) -> ModelFile:
     return file
 
 
-def _model(tree: Tree) -> Model:
+def rebuilt(model: Model, document: Mapping[str, Any]) -> Model:
+    """The model of a changed document; an engine block that is as before keeps its engine and all it has worked out."""
+    same = document.get("engine") == model.document.get("engine")
+    return _model(Tree(dict(document)), model.engine if same else None)
+
+
+def _model(tree: Tree, motor: Engine | None = None) -> Model:
     file = validated(tree)
     try:
-        return _built(file, tree.data)
+        return _built(file, tree.data, motor)
     except ModelError as error:
         raise _placed(error, tree) from None
 
@@ -76,8 +83,8 @@ def _placed(error: ModelError, tree: Tree) -> ModelError:
     return ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told)
 
 
-def _built(file: ModelFile, document: Mapping[str, Any]) -> Model:
-    motor = engine(file.engine) if file.engine else None
+def _built(file: ModelFile, document: Mapping[str, Any], known: Engine | None) -> Model:
+    motor = known or (engine(file.engine) if file.engine else None)
     built = machine(file, motor.layout.throw_count if motor else None)
     model = Model(
         name=file.name,

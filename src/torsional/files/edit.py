@@ -1,0 +1,95 @@
+"""Changed copies of a model by key paths, as a command line or a sweep names them."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from torsional.errors import ModelError
+from torsional.files.load import rebuilt
+from torsional.files.reader import parse_tree
+from torsional.files.scalars import resolved
+from torsional.model import Model
+from torsional.units import quoted
+
+Edit = str | Mapping[str, Any]
+
+
+def changed(model: Model, *edits: Edit) -> Model:
+    """A copy of a model with values of its document changed and everything checked again.
+
+    An edit is a text such as ``absorber.stages.0.stiffness=10kNm/rad`` or a mapping {path: value}; a value of null
+    (None) removes the key, so that its default holds.  ModelError, with the nearest key, for a path or a value that
+    the model file could not have.
+    """
+    if not model.document:
+        remedy = "change its powertrain instead: Powertrain.replaced"
+        raise ModelError("the model did not come from a model file", where=model.name, remedy=remedy)
+    document = copy.deepcopy(dict(model.document))
+    for edit in edits:
+        for path, value in [parsed_edit(edit)] if isinstance(edit, str) else edit.items():
+            _put(document, path, value)
+    return rebuilt(model, document)
+
+
+def parsed_edit(text: str) -> tuple[str, Any]:
+    """Path and value of a text path=value; a value in brackets is read as YAML.
+
+    >>> parsed_edit("clutch.stages = [{up_to: 100 Nm, stiffness: 5e3}]")
+    ('clutch.stages', [{'up_to': '100 Nm', 'stiffness': 5000.0}])
+    """
+    path, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or not path:
+        example = "absorber.stages.0.stiffness=10kNm/rad"
+        raise ModelError("a change is written path=value", found=quoted(text), remedy=f"e.g. {example}")
+    if value[:1] in ("[", "{", "'", '"'):
+        try:
+            return path, parse_tree(f"value: {value}").data["value"]
+        except ModelError as error:
+            raise ModelError(error.problem, where=path, found=error.found, remedy=error.remedy) from None
+    return path, resolved(value, path)
+
+
+def document_paths(model: Model) -> tuple[str, ...]:
+    """The key paths of all single values of a model's document, in its order; contents of files are left out."""
+    return tuple(path for path, _ in document_values(model.document))
+
+
+def document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Key paths and single values of a document."""
+    if not isinstance(value, Mapping | list):
+        yield path, value
+        return
+    items = value.items() if isinstance(value, Mapping) else enumerate(value)
+    for key, item in items:
+        if not (key == "text" and "file" in value):
+            yield from document_values(item, f"{path}.{key}" if path else str(key))
+
+
+def _put(document: dict[str, Any], path: str, value: Any) -> None:
+    """Set or remove one value; blocks on the way that the document leaves out are made."""
+    *steps, last = path.split(".")
+    holder: Any = document
+    for number, step in enumerate(steps):
+        if isinstance(holder, dict) and step not in holder:
+            holder[step] = {}
+        holder = holder[_key(holder, step, ".".join(steps[:number]))]
+        if not isinstance(holder, dict | list):
+            where = ".".join(steps[: number + 1])
+            raise ModelError("this is a single value and holds no keys", where=where, found=quoted(holder))
+    key = _key(holder, last, ".".join(steps))
+    if value is not None:
+        holder[key] = copy.deepcopy(value)
+    elif isinstance(holder, list) or key in holder:
+        del holder[key]
+
+
+def _key(holder: Any, step: str, path: str) -> Any:
+    """A step as key of a mapping or index of a list."""
+    if isinstance(holder, dict):
+        return step
+    if step.isascii() and step.isdigit() and int(step[:6]) < len(holder):
+        return int(step[:6])
+    allowed = f"0 to {len(holder) - 1}"
+    raise ModelError("the list has no such item", where=path, found=quoted(step), allowed=allowed)
