@@ -62,6 +62,14 @@ class Law:
         """Slope of the torque [Nm/rad] at an angle [rad]."""
         return self.evaluate(angle)[1]
 
+    def stage_name(self, angle: float) -> str:
+        """The part of the law that an angle [rad] lies in, in words; a law without parts is smooth."""
+        return "smooth"
+
+    def distance_to_stop(self, angle: float, torque: float) -> float:
+        """The way [rad] left to the end stop on the side of the torque; not a number where there is none."""
+        return float("nan")
+
     def secant(self, centre: ArrayLike, amplitude: ArrayLike) -> Array:
         """Stiffness of the chord [Nm/rad] across ``centre ± amplitude`` [rad]."""
         centre, amplitude = np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float)
@@ -167,6 +175,23 @@ class Hinges(Law):
         edges = np.unique(self.gaps)
         middle = np.searchsorted(edges, 0.0)
         return np.asarray(np.searchsorted(edges, np.asarray(angle, dtype=float)) - middle, dtype=np.int64)
+
+    def stage_name(self, angle: float) -> str:
+        """Stages as an engineer counts them: stage 1 first; free play; stop.
+
+        >>> law = Hinges.staged([(100.0, 1e3), (300.0, 4e3)], lash=0.02, stop_stiffness=1e6)
+        >>> [law.stage_name(x) for x in (0.0, 0.05, -0.12, 0.2)]
+        ['free play', 'stage 1', 'stage 2', 'stop']
+        """
+        if any(abs(angle) >= abs(stop) and angle * stop > 0 for stop in self.stops):
+            return "stop"
+        number = abs(int(self.stage(angle))) + (float(self.tangent(0.0)) > 0)
+        return f"stage {number}" if number else "free play"
+
+    def distance_to_stop(self, angle: float, torque: float) -> float:
+        """The way [rad] left to the stop on the side of the torque: zero in it, not a number without one."""
+        ahead = [abs(stop) for stop in self.stops if stop * (torque or 1.0) > 0]
+        return max(min(ahead) - abs(angle), 0.0) if ahead else float("nan")
 
     def angle(self, torque: ArrayLike) -> Array:
         """The relative angle [rad] at which a torque [Nm] is carried; in a free range, its middle.

@@ -54,3 +54,16 @@ def test_refused() -> None:
     limited = Powertrain({**LINE, "dmf": Coupling("secondary", "engine", Hinges(0.0, (0.1,), (1.0,), (1e3,)))})
     with pytest.raises(ModelError, match="dmf: no angle carries"):
         equilibrium(assemble(limited), {"engine": -10.0}, hold="wheel")
+
+
+def test_stage_and_distance_to_stop() -> None:
+    """Stop at 1000/8e3 + 2500/24e3 beyond half the lash; at 2000 Nm 1500/24e3 of the second stage are left."""
+    law = Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], lash=0.02, stop_stiffness=1e6)
+    system = assemble(Powertrain({**LINE, "dmf": Coupling("secondary", "engine", law)}))
+    point = equilibrium(system, {"engine": 2000.0}, hold="wheel")
+    assert (point.stage("dmf"), point.stage("shaft")) == ("stage 2", "linear")
+    assert point.distance_to_stop("dmf") == pytest.approx(1500 / 24e3)
+    assert np.isnan(point.distance_to_stop("shaft"))
+    assert equilibrium(system, {"engine": 0.0}, hold="wheel").stage("dmf") == "free play"
+    with pytest.raises(ModelError, match="did you mean 'dmf'"):
+        point.stage("dmff")

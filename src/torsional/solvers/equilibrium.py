@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.errors import ModelError
+from torsional.errors import ModelError, nearest
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
 from torsional.system import System
@@ -21,13 +21,34 @@ ITERATIONS = 100
 class OperatingPoint:
     """Mean state of every connection: ``torque`` [Nm], ``angle`` [rad], ``stiffness`` (tangent) [Nm/rad].
 
-    Arrays have the shape of the mean torques asked for, then one place a connection of ``names``.
+    Arrays have the shape of the mean torques asked for, then one place a connection of ``names``; ``laws`` (None where
+    linear) are those the state was found with.
     """
 
     names: tuple[str, ...]
     torque: Array
     angle: Array
     stiffness: Array
+    laws: tuple[Law | None, ...]
+
+    def stage(self, name: str) -> str:
+        """The active stage of one connection, of an operating point at a single torque, in words."""
+        i = self._index(name)
+        law = self.laws[i]
+        return "linear" if law is None else law.stage_name(float(self.angle[i]))
+
+    def distance_to_stop(self, name: str) -> float:
+        """The way [rad] one connection has left to its stop; not a number where it has none."""
+        i = self._index(name)
+        law = self.laws[i]
+        return float("nan") if law is None else law.distance_to_stop(float(self.angle[i]), float(self.torque[i]))
+
+    def _index(self, name: str) -> int:
+        if name not in self.names:
+            raise ModelError(f"there is no connection '{name}'", where=name, remedy=nearest(name, self.names))
+        if self.angle.ndim > 1:
+            raise ModelError("the operating point is one of many", where=name, remedy="ask for a single mean torque")
+        return self.names.index(name)
 
 
 def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> OperatingPoint:
@@ -63,7 +84,8 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
     shape = np.broadcast_shapes(*(np.shape(value) for value in torques.values()))
     stiffness = np.array([_forces(system, a)[1] for a in angle])
     names = system.connections.names
-    return OperatingPoint(names, *(v.reshape(*shape, carrying.size) for v in (torque, angle, stiffness)))
+    shaped = (v.reshape(*shape, carrying.size) for v in (torque, angle, stiffness))
+    return OperatingPoint(names, *shaped, laws=system.connections.laws)
 
 
 def linearize(system: System, point: OperatingPoint) -> System:
