@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -92,6 +93,25 @@ class System:
         """The nonlinear connections: name, direction w on the coordinates, law."""
         c = self.connections
         return tuple((n, w, law) for n, w, law in zip(c.names, c.weights, c.laws, strict=True) if law is not None)
+
+    @cached_property
+    def hash(self) -> str:
+        """Sixteen hexadecimal digits that tell this system from every other: names, weights, values, laws."""
+        c, m = self.connections, self.masses
+        values = (
+            self.T,
+            m.weights,
+            m.inertia,
+            c.weights,
+            c.stiffness,
+            c.damping,
+            c.loss_factor,
+            c.centrifugal_stiffness,
+        )
+        told = hashlib.sha256(repr((self.nodes, c.names, m.names, m.switches, c.laws)).encode())
+        for array in values:
+            told.update(array.tobytes())
+        return told.hexdigest()[:16]
 
     def node_index(self, node: str) -> int:
         """Position of a node; raises ModelError with the nearest name."""

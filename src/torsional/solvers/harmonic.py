@@ -65,6 +65,7 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
         },
         analysis="harmonic response",
         amplitude="complex 0-peak",
+        system_hash=system.hash,
     )
 
 

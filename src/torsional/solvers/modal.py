@@ -29,7 +29,7 @@ def modal(system: System, speed: float = 0.0) -> xr.Dataset:
     array([  0. , 176.1])
     """
     linear(system)
-    system = system.switched(speed)
+    told, system = system.hash, system.switched(speed)
     omega, shapes = _modes(system, speed)
     c, m = system.connections, system.masses
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -56,6 +56,7 @@ def modal(system: System, speed: float = 0.0) -> xr.Dataset:
         },
         analysis="modal",
         mean_speed=float(speed),
+        system_hash=told,
     )
 
 
@@ -66,7 +67,7 @@ def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
     ``shape`` (mode, node), largest angle one; rigid rotations first.
     """
     linear(system)
-    system = system.switched(speed)
+    told, system = system.hash, system.switched(speed)
     c, m, stiffness = system.connections, system.masses, _stiffness(system, speed)
     found = quadratic_modes(c.weights, stiffness, c.weights, c.damping, m.weights, m.inertia)
     angles = system.T @ found.shapes
@@ -81,6 +82,7 @@ def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
         {"mode": (np.arange(found.eigenvalues.size), ""), "node": (np.array(system.nodes), "")},
         analysis="damped modes",
         mean_speed=float(speed),
+        system_hash=told,
     )
 
 
