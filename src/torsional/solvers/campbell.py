@@ -54,7 +54,11 @@ def campbell(
     return dataset(
         {
             "frequency": (("gear", "speed", "mode"), _stacked([l.frequency for l in lines], count, 1), "frequency"),
-            "damping_ratio": (("gear", "speed", "mode"), _stacked([l.damping for l in lines], count, 1), "damping_ratio"),
+            "damping_ratio": (
+                ("gear", "speed", "mode"),
+                _stacked([l.damping for l in lines], count, 1),
+                "damping_ratio",
+            ),
             "elastic_share": (("gear", "speed", "mode", "element"), _shares(lines, elements, count), "energy_share"),
             "crossing": (("gear", "mode", "order"), _stacked([l.crossing for l in lines], count, 0), "speed"),
         },
@@ -134,9 +138,7 @@ def _line(system: System, speeds: Array, orders: Array) -> _Line:
     repeats = (len(speeds) // len(found), 1)
     frequency, damping = (np.tile([m[key].values for m in found], repeats) for key in ("frequency", "damping_ratio"))
     shares = np.tile([m.elastic_share.values for m in found], (*repeats, 1))
-    return _Line(
-        system.connections.names, frequency, damping, shares, _crossings(system, speeds, frequency, orders)
-    )
+    return _Line(system.connections.names, frequency, damping, shares, _crossings(system, speeds, frequency, orders))
 
 
 def _crossings(system: System, speeds: Array, frequency: Array, orders: Array) -> Array:
