@@ -6,6 +6,7 @@ Every contender's numbers are checked against a dense solver before its time cou
 from __future__ import annotations
 
 import chain15
+import modal_floor
 import numpy as np
 import ours
 import peers
@@ -45,7 +46,9 @@ MODES = {"SciPy, eigh in a loop": (peers.scipy_modes, FEW), "NumPy, batched eigh
 
 @pytest.mark.parametrize("contender", MODES)
 def test_l3_modes(contender, timed, declared):
-    declared("L3", "modes with vectors of designs of 15 discs, matrices given; a case is one design")
+    declared(
+        "L3", "modes with vectors of designs of 15 discs, matrices given; a case is one design", modal_floor.floor()
+    )
     find, count = MODES[contender]
     inertia, stiffness = chain15.designs(count)
     K = peers.stiffness_matrices(stiffness)

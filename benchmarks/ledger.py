@@ -69,8 +69,8 @@ class Ledger:
     titles: dict[str, str] = field(default_factory=dict)
 
     def ours(self, work: str) -> float | None:
-        """This project's time at a piece of work by its public function, which is entered first; None without one."""
-        times = [e.seconds for e in self.entries if e.work == work and e.contender.startswith(OURS)]
+        """This project's time for a case, by its public function, which is entered first; None without one."""
+        times = [e.seconds / e.cases for e in self.entries if e.work == work and e.contender.startswith(OURS)]
         return next(iter(times), None)
 
     def rows(self, machine: Machine) -> list[dict[str, object]]:
@@ -79,7 +79,7 @@ class Ledger:
         for entry in self.entries:
             ours, floor = self.ours(entry.work), self.floors.get(entry.work)
             per_case = entry.seconds / entry.cases
-            ratio = None if ours is None else entry.seconds / ours
+            ratio = None if ours is None else per_case / ours
             distance = None if floor is None else per_case / floor.seconds(machine)
             rows.append(asdict(entry) | {"per_case": per_case, "times_ours": ratio, "times_floor": distance})
         return rows
