@@ -1,0 +1,217 @@
+"""The commands and what they take; what they do is imported when one of them runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from torsional import __version__
+from torsional.cli import options as o
+
+Job = Callable[[], None]
+RESULTS = (".nc", ".csv", ".json", ".png", ".svg")
+
+app = typer.Typer(
+    name="torsional",
+    help="Torsional vibrations of vehicle powertrains and the absorbers that tame them.",
+    epilog="A first model: torsional new truck -o my.yaml, then torsional check my.yaml.",
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+
+def command() -> Any:
+    """The command line as one callable; called without typer's own handling it returns the job to do."""
+    return typer.main.get_command(app)
+
+
+def _job(module: str, **asked: Any) -> Job:
+    """What was asked for, to be done after parsing, so that failures pass through no hands but ours."""
+    return partial(_do, module, asked)
+
+
+def _do(module: str, asked: dict[str, Any]) -> None:
+    import_module(f"torsional.cli.{module}").run(**asked)
+
+
+def _analysis(module: str, asked: dict[str, Any], suffixes: tuple[str, ...] = RESULTS) -> Job:
+    """A job on a model file."""
+    return partial(_analyse, module, asked, suffixes)
+
+
+def _analyse(module: str, asked: dict[str, Any], suffixes: tuple[str, ...]) -> None:
+    """Read the model before the analyses are imported: a bad file or output name is answered at once."""
+    from torsional.cli.request import requested
+
+    common = {key: asked.pop(key) for key in ("model", "changes", "output", "as_json", "quiet")}
+    request = requested(suffixes=suffixes, **common)
+    import_module(f"torsional.cli.{module}").run(request, **asked)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"torsional {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def check(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    torque: o.Torque = "",
+    changes: o.Changes = None,
+    expand: Annotated[bool, typer.Option("--expand", help="Print the model written as components alone.")] = False,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Read a model and say what looks wrong.
+
+    Tells what the file holds, how its springs stand under full load, and its first modes.  Exit code 2 for a file that
+    is no model.
+    """
+    return _analysis("check", locals(), (".yaml", ".yml") if expand else (".json",))
+
+
+@app.command()
+def modes(
+    model: o.ModelFile,
+    gear: o.Gears = "",
+    torque: o.Torque = "",
+    speed: o.Speed = "",
+    order: Annotated[
+        float | None,
+        typer.Option(
+            "--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest.", show_default=False
+        ),
+    ] = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Natural frequencies, damping and energy.
+
+    Tells as well at which engine speed an order meets each mode.
+    """
+    return _analysis("modes", locals())
+
+
+@app.command()
+def respond(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    torque: o.Torque = "",
+    speed: o.Speeds = "",
+    order: o.Order = None,
+    orders: o.Orders = "",
+    node: o.Nodes = None,
+    element: o.Elements = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Response to the engine orders over speed.
+
+    At full load or at one mean torque; tells the peaks of the strongest orders and of all orders together.
+    """
+    return _analysis("respond", locals())
+
+
+@app.command("map")
+def map_(
+    model: o.ModelFile,
+    gear: o.Gears = "",
+    torque: o.Torques = "",
+    speed: o.Speeds = "",
+    order: o.Order = None,
+    orders: o.Orders = "",
+    node: o.Nodes = None,
+    element: o.Elements = None,
+    worst: Annotated[int, typer.Option("--worst", min=1, metavar="N", help="Cells to list for each place.")] = 3,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Response over speed, torque and gear.
+
+    Tells the worst cells within full load.
+    """
+    return _analysis("map", locals())
+
+
+@app.command()
+def campbell(
+    model: o.ModelFile,
+    gear: o.Gears = "",
+    torque: o.Torque = "",
+    speed: o.Speeds = "",
+    order: o.Order = None,
+    orders: o.Orders = "",
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Where engine orders meet the modes."""
+    return _analysis("campbell", locals())
+
+
+@app.command()
+def report(
+    model: o.ModelFile,
+    compare: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated.", show_default=False
+        ),
+    ] = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="The page to write, ending in .html.")
+    ] = Path("report.html"),
+    quiet: o.Quiet = False,
+) -> Job:
+    """One HTML page about one model or several."""
+    return _job("report", **locals())
+
+
+@app.command()
+def schema(output: o.Output = None) -> Job:
+    """JSON Schema of model files, for editors."""
+    return _job("starting", what="schema", **locals())
+
+
+@app.command()
+def new(
+    kind: Annotated[str, typer.Argument(metavar="[KIND]", help="truck or line.")] = "truck",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="The model file to write.", show_default=False)
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")] = False,
+) -> Job:
+    """A commented model file to begin with."""
+    return _job("starting", what="new", kind=kind, output=[output] if output else None, force=force)
+
+
+@app.command()
+def warmup(as_json: o.Json = False, quiet: o.Quiet = False) -> Job:
+    """Compile the numerical kernels once."""
+    return _job("warmup", **locals())

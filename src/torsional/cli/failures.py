@@ -1,0 +1,112 @@
+"""What goes wrong becomes one sentence on stderr and an exit code; tracebacks only where they are asked for."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from torsional.errors import TorsionalError
+
+DONE, FAILED, MENDABLE, STOPPED, UNREAD = 0, 1, 2, 130, 141
+DEBUG = "TORSIONAL_DEBUG"
+
+
+def guarded(arguments: Sequence[str] | None) -> int:
+    """Run the command with every failure told; the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a terminal without the letter shows '?' and goes on
+            stream.reconfigure(errors="replace")
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning
+        try:
+            return _run(list(sys.argv[1:] if arguments is None else arguments))
+        except BaseException as failure:  # every failure has its sentence
+            return told(failure)
+
+
+def _run(arguments: list[str]) -> int:
+    from torsional.cli.app import command
+
+    job: Any = command()(args=arguments or ["--help"], prog_name="torsional", standalone_mode=False)
+    if callable(job):
+        job()
+    sys.stdout.flush()  # a reader that is gone is met here, not while Python shuts down
+    return job if isinstance(job, int) else DONE
+
+
+def told(failure: BaseException) -> int:
+    """Say on stderr what went wrong; the exit code."""
+    if os.environ.get(DEBUG) and not isinstance(failure, SystemExit):
+        traceback.print_exception(failure)
+    for kinds, answer in _ANSWERS:
+        if isinstance(failure, kinds):
+            return answer(failure)
+    if hasattr(failure, "exit_code"):  # raised by typer, whose classes have moved between its versions
+        return _usage(failure)
+    remedy = "" if os.environ.get(DEBUG) else f"; {DEBUG}=1 in the environment shows where"
+    complain(f"this should not have happened: {type(failure).__name__}: {failure}{remedy}")
+    return FAILED
+
+
+def complain(message: str, kind: str = "error") -> None:
+    """One line on stderr."""
+    print(f"{kind}: {clean(message)}", file=sys.stderr)
+
+
+def clean(text: object) -> str:
+    """A text as it may be printed: control characters, which could steer a terminal, are escaped."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in str(text))
+
+
+def _mendable(failure: BaseException) -> int:
+    complain(str(failure))
+    return MENDABLE
+
+
+def _stopped(_: BaseException) -> int:
+    print("stopped, nothing written", file=sys.stderr)
+    return STOPPED
+
+
+def _unread(_: BaseException) -> int:
+    """Nobody reads stdout any more (| head): be silent, also in the flush while Python shuts down."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return UNREAD
+
+
+def _full_memory(_: BaseException) -> int:
+    complain("there is not enough memory for this; ask for fewer speeds, torques, orders or gears")
+    return FAILED
+
+
+def _exits(failure: BaseException) -> int:
+    code = getattr(failure, "code", None)
+    return code if isinstance(code, int) else DONE if code is None else FAILED
+
+
+_ANSWERS: tuple[tuple[type[BaseException], Callable[[BaseException], int]], ...] = (
+    (TorsionalError, _mendable),
+    (KeyboardInterrupt, _stopped),
+    (BrokenPipeError, _unread),
+    (MemoryError, _full_memory),
+    (SystemExit, _exits),
+)
+
+
+def _usage(failure: Any) -> int:
+    """Typer's exceptions: an early exit, an abort, or a line that cannot be read."""
+    if not hasattr(failure, "format_message"):
+        return int(failure.exit_code)
+    context = getattr(failure, "ctx", None)
+    path = context.command_path if context is not None else "torsional"
+    message = " ".join(failure.format_message().split())
+    complain(f"{message.rstrip('.')} (see '{path} --help')")
+    return MENDABLE
+
+
+def _show_warning(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    complain(str(message), kind="warning")

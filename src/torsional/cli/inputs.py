@@ -1,0 +1,98 @@
+"""What was typed, as values: gears, torques, speeds and orders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from torsional import units
+from torsional.cli.failures import complain
+from torsional.errors import ModelError, nearest
+
+if TYPE_CHECKING:
+    from torsional.model import Model
+    from torsional.numerics.arrays import Array
+
+
+def one_gear(model: Model, text: str) -> str:
+    """The gear named, the last one by default; ModelError with the nearest name."""
+    found = gears(model, text)
+    if len(found) > 1:
+        raise ModelError("one gear is wanted here", where="--gear", found=units.quoted(text))
+    return found[0]
+
+
+def gears(model: Model, text: str) -> list[str]:
+    """The gears named, separated by commas, or all of them."""
+    known = model.gear_names
+    if not text:
+        return [model.top_gear]
+    if text.strip() == "all" and "all" not in known:
+        return list(known)
+    named = [text] if text in known else [part.strip() for part in text.split(",")]
+    for name in named:
+        if name not in known:
+            remedy = nearest(name, known) if model.gears else "this model has no gears: leave --gear out"
+            raise ModelError(f"there is no gear {units.quoted(name)}", where="--gear", remedy=remedy)
+    return list(dict.fromkeys(named))
+
+
+def torque(model: Model, text: str) -> float:
+    """One mean engine torque [Nm]; by default the highest of the full-load curve."""
+    from torsional.solvers.campbell import typical_torque
+
+    return _value(text, "torque", "--torque") if text else typical_torque(model)
+
+
+def speed(model: Model, text: str) -> float:
+    """One mean engine speed [rad/s]; by default where full load is highest, else the middle of the operating range."""
+    if text:
+        return _value(text, "speed", "--speed")
+    curve = model.engine.full_load if model.engine else None
+    if curve is None:
+        return float(np.mean(model.operation.speed))
+    return float(curve.speeds[int(np.argmax(curve.torques))])
+
+
+def speeds(model: Model, text: str, count: int) -> Array:
+    """Mean engine speeds [rad/s], ``count`` of them where no step is given; by default over the operating range."""
+    return _values(text, "speed", "--speed", count) if text else model.speeds(count)
+
+
+def torques(model: Model, text: str, count: int) -> Array:
+    """Mean engine torques [Nm] of a map."""
+    return _values(text, "torque", "--torque", count) if text else model.torques(count)
+
+
+def orders(single: Sequence[float] | None, text: str) -> Array | None:
+    """The engine orders asked for, ascending; None for the usual ones."""
+    found = [_value(value, "engine_order", "--order") for value in single or ()]
+    if text:
+        found += [float(n) for n in _values(text, "engine_order", "--orders", 0)]
+    return np.unique(np.array(found)) if found else None
+
+
+def _value(text: str | float, quantity: str, option: str) -> float:
+    value = units.read(text, quantity, where=option)
+    _doubt([value], quantity, option)
+    return value
+
+
+def _values(text: str, quantity: str, option: str, count: int) -> Array:
+    """One value, or those of a range: with its step, else ``count`` evenly spaced (orders: half ones)."""
+    if ":" not in text:
+        return np.array([_value(text, quantity, option)])
+    start, stop, *step = units.read_range(text, quantity, where=option)
+    _doubt([start, stop], quantity, option)
+    if not step and count:
+        return np.linspace(start, stop, count)
+    width = step[0] if step else 0.5
+    return np.asarray(start + width * np.arange(int((stop - start) / width * (1 + 1e-12) + 1e-9) + 1))
+
+
+def _doubt(values: Sequence[float], quantity: str, option: str) -> None:
+    """Say on stderr what looks like a forgotten unit."""
+    for warning in dict.fromkeys(told for value in values for told in units.plausible(value, quantity)):
+        complain(f"{option}: {warning}", kind="warning")

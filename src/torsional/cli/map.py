@@ -1,0 +1,133 @@
+"""`torsional map`: response over speed, mean torque and gear, its worst cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from torsional.cli import inputs
+from torsional.cli.answers import Answer, deliver, told_settings
+from torsional.cli.failures import complain
+from torsional.cli.places import chosen_places, speed_ratios, together
+from torsional.cli.progress import progress
+from torsional.cli.request import Request
+from torsional.cli.tables import Column, Table
+from torsional.model import Model
+from torsional.solvers.map import HALF_ORDERS, response_map
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SPEEDS, TORQUES = 57, 26
+
+
+def run(
+    request: Request,
+    gear: str,
+    torque: str,
+    speed: str,
+    order: Sequence[float] | None,
+    orders: str,
+    node: Sequence[str] | None,
+    element: Sequence[str] | None,
+    worst: int,
+) -> None:
+    """Answer the command."""
+    machine = request.model
+    gears, asked = inputs.gears(machine, gear), inputs.orders(order, orders)
+    speeds, torques = inputs.speeds(machine, speed, SPEEDS), inputs.torques(machine, torque, TORQUES)
+    nodes, elements = chosen_places(machine, gears[-1], node, element)
+    with progress("gears", request.quiet or request.as_json) as moved:
+        n = HALF_ORDERS if asked is None else asked
+        full = response_map(machine, speeds, torques, gears, n, nodes=nodes, elements=elements, progress=moved)
+        data = reduced(full, machine)
+    _warn_unsolved(full)
+    settings = {"gears": gears, "orders": full.order.values}
+    tables = [_summary(full, machine), *_tables(data, worst)]
+    answer = Answer(
+        "map", tables, told_settings(request, **settings), data, full.assign(data.data_vars), lambda: _picture(data)
+    )
+    deliver(answer, request)
+
+
+def reduced(full: xr.Dataset, model: Model) -> xr.Dataset:
+    """All orders together in each cell of a `response_map`, beside the bounds; gear by gear, to spare memory."""
+    parts = [_one_gear(full.isel(gear=[i]), model) for i in range(full.sizes["gear"])]
+    found = xr.concat(parts, "gear", combine_attrs="override")
+    kept = full[["within_full_load", "travel"]].assign(unsolved=(full.status > 1).any("order"))
+    return found.merge(kept).assign_attrs(full.attrs)
+
+
+def _one_gear(full: xr.Dataset, model: Model) -> xr.Dataset:
+    ratios = speed_ratios(model, str(full.gear.values[0]), full.node.values.tolist())
+    told = together(full.angle, full.torque_order, ratios)
+    return xr.Dataset({name: values.transpose("gear", "torque", "speed", ...) for name, values in told.items()})
+
+
+def _warn_unsolved(full: xr.Dataset) -> None:
+    count = int((full.status > 1).any("order").sum())
+    if count:
+        remedy = "give the parts some damping, or choose other speeds"
+        complain(f"{count} cells meet an undamped mode and have no finite response; {remedy}", kind="warning")
+
+
+def _summary(full: xr.Dataset, model: Model) -> Table:
+    within = int(full.within_full_load.sum()) * full.sizes["gear"]
+    rows: list[Sequence[object]] = [
+        ["model", model.name],
+        ["gears", ", ".join(name for name in full.gear.values if name) or "none"],
+        ["grid", " × ".join(f"{full.sizes[dim]} {dim}s" for dim in ("gear", "torque", "speed", "order"))],
+        ["cells within full load", f"{within} of {full.within_full_load.size * full.sizes['gear']}"],
+    ]
+    return Table("Map", [Column("what"), Column("value")], rows)
+
+
+def _tables(data: xr.Dataset, count: int) -> list[Table]:
+    """The cells within full load in which the swing is largest, for each place."""
+    found = []
+    for dim, kind in (("node", "acceleration"), ("element", "torque")):
+        columns = [Column(dim), Column("gear"), Column("torque", "torque"), Column("speed", "speed")]
+        columns += [Column("half p-p", kind), Column("bound", kind)]
+        rows = [row for place in data[dim].values for row in _worst(data, dim, kind, place, count)]
+        if rows:
+            found.append(Table(f"{kind.capitalize()}: half peak-to-peak, worst cells within full load", columns, rows))
+    return found
+
+
+def _worst(data: xr.Dataset, dim: str, kind: str, place: str, count: int) -> list[list[object]]:
+    swung = data[f"{kind}_swing"].sel({dim: place}).where(data.within_full_load)
+    most = data[f"{kind}_bound"].sel({dim: place})
+    ranked = np.argsort(-swung.fillna(-1.0).values, axis=None, kind="stable")[:count]
+    rows = []
+    for gear, torque, speed in zip(*np.unravel_index(ranked, swung.shape), strict=True):
+        at = {"gear": int(gear), "torque": int(torque), "speed": int(speed)}
+        cell, limit = swung.isel(at), most.isel(at)
+        if np.isfinite(float(cell)):
+            rows.append(
+                [place, str(cell.gear.values), float(cell.torque), float(cell.speed), float(cell), float(limit)]
+            )
+    return rows
+
+
+def _picture(data: xr.Dataset) -> Figure:
+    """Accelerations over speed and torque: of every node in one gear, or of the last node in every gear."""
+    from torsional.plots import panels, plot_map
+    from torsional.plots.maps import colour_limits
+    from torsional.plots.style import figure_of, readable
+
+    one = data.sizes["gear"] == 1
+    cells = [{"gear": 0, "node": i} for i in range(data.sizes["node"])] if one else []
+    cells = cells or [{"gear": i, "node": -1} for i in range(data.sizes["gear"])]
+    values = [data.acceleration_swing.isel(cell) for cell in cells]
+    columns = min(len(cells), 2 if one else 4)
+    drawn = panels(-(-len(cells) // columns), columns, (6.0, 4.2))
+    for axes, value in zip(drawn, values, strict=False):
+        title = readable(value.node.values) + (f", gear {value.gear.values}" if str(value.gear.values) else "")
+        limits = None if one else colour_limits(*(v.values for v in values))
+        plot_map(value, within=data.within_full_load, limits=limits, title=title, axes=axes)
+    for axes in drawn[len(cells) :]:
+        axes.remove()
+    return figure_of(drawn[0])

@@ -1,0 +1,135 @@
+"""`torsional modes`: natural frequencies by name, with damping, speeds of the main order, and energy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from torsional.cli import inputs
+from torsional.cli.answers import Answer, deliver, told_settings
+from torsional.cli.documents import amount
+from torsional.cli.request import Request
+from torsional.cli.tables import Column, Table
+from torsional.model import Model
+from torsional.quantities import named_modes, order_speed
+from torsional.solvers.campbell import engine_orders
+from torsional.solvers.modal import damped_modes, modal
+from torsional.solvers.operating import operated
+from torsional.units import show
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NOTABLE = 0.1
+"""Least share of a mode's elastic energy that is worth a word."""
+
+
+def run(
+    request: Request,
+    gear: str,
+    torque: str,
+    speed: str,
+    order: float | None,
+) -> None:
+    """Answer the command."""
+    machine = request.model
+    names = inputs.gears(machine, gear)
+    mean, at = inputs.torque(machine, torque), inputs.speed(machine, speed)
+    main = order if order is not None else next(iter(engine_orders(machine)), None)
+    found = [modes_of(machine, name, mean, at, main) for name in names]
+    settings = {"gears": names, "torque": amount(mean, "torque"), "speed": amount(at, "speed"), "order": main}
+    tables = [_table(data, name, settings) for data, name in zip(found, names, strict=True)]
+    answer = Answer(
+        "modes",
+        tables,
+        told_settings(request, **settings),
+        xr.concat(found, "gear", combine_attrs="override").assign_coords(gear=names),
+        picture=lambda: _picture(machine, found[-1], names[-1]),
+    )
+    deliver(answer, request)
+
+
+def groups(model: Model) -> Mapping[str, Sequence[str]]:
+    """Names of modes by the parts that an engineer asks for first."""
+    marks = model.landmarks
+    return {"absorber mode": marks.springs, "clutch mode": (marks.clutch,) if marks.clutch else ()}
+
+
+def modes_of(model: Model, gear: str, torque: float, speed: float, order: float | None) -> xr.Dataset:
+    """What `modal` finds, with names, the damped modes next to it, and the speed at which the order meets each mode."""
+    system, _ = operated(model, torque, gear or None)
+    found, damped = modal(system, speed), damped_modes(system, speed)
+    partner = paired(found, damped)
+    result = found.assign(
+        name=("mode", np.array(named_modes(found, groups(model)))),
+        damped_frequency=("mode", damped.frequency.values[partner], damped.frequency.attrs),
+        damped_ratio=("mode", damped.damping_ratio.values[partner], damped.damping_ratio.attrs),
+    )
+    return result if order is None else result.assign(order_speed=order_speed(found.frequency, order))
+
+
+def paired(undamped: xr.Dataset, damped: xr.Dataset) -> list[int]:
+    """For each undamped mode the damped one most like it in shape and frequency; damping may add modes and swap some.
+
+    The likeness of shapes is the modal assurance criterion (Allemang and Brown, Proc. 1st IMAC, 1982, 110).
+    """
+    a, b = (_unit(modes["shape"].values) for modes in (undamped, damped))
+    low, high = (pick.outer(undamped.frequency.values, damped.frequency.values) for pick in (np.minimum, np.maximum))
+    alike = np.abs(a @ b.T) ** 2 * np.where(high > 0, low / np.where(high > 0, high, 1.0), 1.0)
+    partner = [0] * len(a)
+    for _ in partner:
+        row, column = np.unravel_index(alike.argmax(), alike.shape)
+        partner[int(row)] = int(column)
+        alike[row], alike[:, column] = -1.0, np.where(alike[:, column] < 0, -1.0, -0.5)
+    return partner
+
+
+def _unit(shapes: np.ndarray) -> np.ndarray:
+    return np.asarray(shapes / np.linalg.norm(shapes, axis=1, keepdims=True))
+
+
+def _table(data: xr.Dataset, gear: str, settings: Mapping[str, object]) -> Table:
+    order = settings["order"]
+    columns = [
+        Column("mode", "number"),
+        Column("name"),
+        Column("frequency", "frequency"),
+        Column("damping ratio", "damping_ratio"),
+        *([Column(f"order {order:g} meets it at", "speed")] if order is not None else []),
+        Column("elastic energy"),
+    ]
+    rows = [_row(data.isel(mode=i), int(data.mode[i]), order is not None) for i in range(data.sizes["mode"])]
+    return Table(f"Modes{in_gear(gear)}, {at_torque(settings)}", columns, rows)
+
+
+def _row(mode: xr.Dataset, number: int, with_order: bool) -> list[object]:
+    elastic = float(mode.frequency) > 0
+    met = [float(mode.order_speed) if elastic else None] if with_order else []
+    ratio = float(mode.damped_ratio) if elastic else None
+    return [number, str(mode.name.values), float(mode.frequency), ratio, *met, _shares(mode.elastic_share)]
+
+
+def _shares(share: xr.DataArray) -> str:
+    largest = np.argsort(-share.values, kind="stable")[:3]
+    told = [(share.element.values[i], float(share.values[i])) for i in largest]
+    return ", ".join(f"{name} {100 * value:.0f} %" for name, value in told if value >= NOTABLE)
+
+
+def in_gear(gear: str) -> str:
+    """The gear as part of a title; nothing for a machine without gears."""
+    return f" in gear {gear}" if gear else ""
+
+
+def at_torque(settings: Mapping[str, object]) -> str:
+    """Mean torque and speed as part of a title."""
+    mean, speed = (settings[key]["value"] for key in ("torque", "speed"))  # type: ignore[index]
+    return f"mean torque {show(mean, 'torque')} at {show(speed, 'speed')}"
+
+
+def _picture(model: Model, data: xr.Dataset, gear: str) -> Figure:
+    from torsional.plots import plot_mode_shapes
+
+    return plot_mode_shapes(data, model.powertrain(gear or None), names=[str(name) for name in data.name.values])

@@ -1,0 +1,102 @@
+"""The arguments and options that commands share, each told once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", help="Model file (.yaml or .json).", show_default=False)]
+Gear = Annotated[
+    str,
+    typer.Option("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.", show_default=False),
+]
+Gears = Annotated[
+    str,
+    typer.Option(
+        "--gear",
+        "-g",
+        metavar="NAMES",
+        help="Gear, several as 10,11,12, or 'all'; default: the last one.",
+        show_default=False,
+    ),
+]
+Torque = Annotated[
+    str,
+    typer.Option(
+        "--torque",
+        "-t",
+        metavar="TORQUE",
+        help="Mean engine torque, as '1200 Nm'; default: full load.",
+        show_default=False,
+    ),
+]
+Torques = Annotated[
+    str,
+    typer.Option(
+        "--torque",
+        "-t",
+        metavar="RANGE",
+        help="Mean torques, as '0:2500:100 Nm'; default: up to full load.",
+        show_default=False,
+    ),
+]
+Speed = Annotated[
+    str,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="SPEED",
+        help="Mean engine speed, as '900 rpm'; default: where full load is highest.",
+        show_default=False,
+    ),
+]
+Speeds = Annotated[
+    str,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="RANGE",
+        help="Mean engine speeds, as 600:2000rpm or 600:2000:20rpm; default: the file's operating range.",
+        show_default=False,
+    ),
+]
+Order = Annotated[
+    list[float] | None,
+    typer.Option("--order", "-n", metavar="N", help="An engine order; may be repeated.", show_default=False),
+]
+Orders = Annotated[
+    str, typer.Option("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.", show_default=False)
+]
+Nodes = Annotated[
+    list[str] | None,
+    typer.Option("--node", metavar="NAME", help="A node to look at, or 'all'; may be repeated.", show_default=False),
+]
+Elements = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.", show_default=False
+    ),
+]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="PATH=VALUE",
+        help="Change the model, as absorber.damping=30; may be repeated.",
+        show_default=False,
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Output = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="FILE",
+        help="Write a file; its ending says the kind. May be repeated.",
+        show_default=False,
+    ),
+]

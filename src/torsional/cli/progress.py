@@ -1,0 +1,23 @@
+"""Progress on stderr, in a terminal alone."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from torsional.cli.tables import styled
+
+
+@contextmanager
+def progress(task: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """A function (done, total) that moves a bar; it does nothing where stderr is no terminal or ``quiet`` is set."""
+    if quiet or not styled(sys.stderr):
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        number = bar.add_task(task, total=None)
+        yield lambda done, total: bar.update(number, completed=done, total=total)

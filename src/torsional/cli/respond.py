@@ -1,0 +1,145 @@
+"""`torsional respond`: response to the engine orders over speed, its peaks by place and order."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from torsional.cli import inputs
+from torsional.cli.answers import Answer, deliver, told_settings
+from torsional.cli.documents import amount
+from torsional.cli.modes import in_gear
+from torsional.cli.places import chosen_places, speed_ratios, together
+from torsional.cli.request import Request
+from torsional.cli.tables import Column, Table
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.quantities import acceleration
+from torsional.solvers.campbell import full_load
+from torsional.solvers.equilibrium import linearize
+from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.map import HALF_ORDERS
+from torsional.solvers.operating import mean_state
+from torsional.system import System, assemble
+from torsional.units import show
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SPEEDS = 141
+LISTED = 4
+"""Orders told for each place in the table, largest first; files hold all of them."""
+
+
+def run(
+    request: Request,
+    gear: str,
+    torque: str,
+    speed: str,
+    order: Sequence[float] | None,
+    orders: str,
+    node: Sequence[str] | None,
+    element: Sequence[str] | None,
+) -> None:
+    """Answer the command."""
+    machine = request.model
+    engaged, speeds = inputs.one_gear(machine, gear), inputs.speeds(machine, speed, SPEEDS)
+    mean = np.full(len(speeds), inputs.torque(machine, torque)) if torque else full_load(machine, speeds)
+    asked = inputs.orders(order, orders)
+    places = chosen_places(machine, engaged, node, element)
+    data = response(machine, engaged, speeds, mean, HALF_ORDERS if asked is None else asked, *places)
+    loaded: object = amount(float(mean[0]), "torque") if torque else "full load"
+    settings = {"gear": engaged, "torque": loaded, "orders": data.order.values}
+    title = f"{in_gear(engaged)}, " + (show(float(mean[0]), "torque") if torque else "full load")
+    answer = Answer(
+        "respond", tables(data, title), told_settings(request, **settings), data, picture=lambda: _picture(data)
+    )
+    deliver(answer, request)
+
+
+def response(
+    model: Model, gear: str, speeds: Array, torques: Array, orders: Array, nodes: Sequence[str], elements: Sequence[str]
+) -> xr.Dataset:
+    """What `harmonic_response` finds at each speed with the stiffnesses of its own mean torque [Nm].
+
+    ``angle`` and ``torque`` over (speed, order), complex 0-peak; of all orders `together` ``acceleration_swing``,
+    ``irregularity`` and ``torque_swing`` over speed, half peak-to-peak with phases kept, beside their bounds.
+    """
+    if model.engine is None:
+        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    parts = list(_parts(model, assemble(model.powertrain(gear or None)), speeds, torques, orders))
+    found = (
+        xr.concat(parts, "speed", combine_attrs="override")
+        .sortby("speed")
+        .sel(node=list(nodes), element=list(elements))
+    )
+    told = together(found.angle, found.torque, speed_ratios(model, gear, nodes))
+    mean = xr.Variable("speed", torques, {"units": "Nm", "long_name": "mean torque", "quantity": "torque"})
+    return found.assign(told).assign(mean_torque=mean).assign_attrs(model=model.name, model_hash=model.hash)
+
+
+def _parts(model: Model, system: System, speeds: Array, torques: Array, orders: Array) -> Iterator[xr.Dataset]:
+    """Responses at speeds whose equilibria have the same stiffnesses, solved together."""
+    engine, throws = model.engine, model.landmarks.throws
+    assert engine is not None
+    state = mean_state(model, system, torques)
+    _, group = np.unique(state.stiffness, axis=0, return_inverse=True)
+    for number in range(int(group.max()) + 1):
+        at = np.flatnonzero(group.ravel() == number)
+        point = {key: getattr(state, key)[at[0]] for key in ("torque", "angle", "stiffness")}
+        excitation = engine.excitation(throws, speeds[at], torques[at], orders)
+        yield harmonic_response(linearize(system, dataclasses.replace(state, **point)), excitation)
+
+
+def tables(data: xr.Dataset, title: str) -> list[Table]:
+    """Peaks of accelerations at nodes and of torques of elements."""
+    kinds = (("node", "acceleration", acceleration(data.angle)), ("element", "torque", data.torque))
+    return [_table(data, dim, kind, orders, title) for dim, kind, orders in kinds if data.sizes[dim]]
+
+
+def _table(data: xr.Dataset, dim: str, kind: str, orders: xr.DataArray, title: str) -> Table:
+    columns = [Column(dim), Column("of"), Column("peak", kind), Column("at", "speed")]
+    rows: list[Sequence[object]] = []
+    for place in data[dim].values:
+        together = data[f"{kind}_swing"].sel({dim: place}), data[f"{kind}_bound"].sel({dim: place})
+        rows.append([place, "all orders, half peak-to-peak", *_peak(together[0])])
+        rows.append([place, "all orders, sum as a bound", *_peak(together[1])])
+        rows += [[place, f"order {n:g}, 0-peak", *told] for n, told in strongest(orders.sel({dim: place}))]
+    return Table(f"{kind.capitalize()} at its highest{title}", columns, rows)
+
+
+def _peak(values: xr.DataArray) -> tuple[float, float]:
+    at = int(values.argmax("speed"))
+    return float(values[at]), float(values.speed[at])
+
+
+def strongest(orders: xr.DataArray) -> list[tuple[float, tuple[float, float]]]:
+    """The orders with the highest peaks over speed, largest first: order, (peak, speed)."""
+    peaks = [(float(n), _peak(abs(orders.sel(order=n)))) for n in orders.order.values]
+    return sorted(peaks, key=lambda told: -told[1][0])[:LISTED]
+
+
+def _picture(data: xr.Dataset) -> Figure:
+    """The strongest orders over speed, a panel for each place."""
+    from torsional.plots import panels, plot_order_cuts
+    from torsional.plots.style import figure_of, readable
+
+    places: Mapping[str, xr.DataArray] = {
+        **{str(node): acceleration(data.angle).sel(node=node) for node in data.node.values},
+        **{str(name): data.torque.sel(element=name) for name in data.element.values},
+    }
+    columns = 1 if len(places) == 1 else 2
+    drawn = panels(-(-len(places) // columns), columns)
+    for axes, (place, values) in zip(drawn, places.items(), strict=False):
+        chosen = [n for n, _ in strongest(values)]
+        plot_order_cuts({readable(place): values.expand_dims(gear=[""])}, "", chosen, axes=axes)
+        axes.set_title(readable(place))
+        axes.legend()
+    for axes in drawn[len(places) :]:
+        axes.remove()
+    return figure_of(drawn[0])

@@ -1,0 +1,39 @@
+"""`torsional new` and `torsional schema`: what a first model file begins with."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from torsional.cli.outputs import checked, text_writer, written
+from torsional.errors import ModelError
+
+
+def run(what: str, output: Sequence[Path] | None, kind: str = "", force: bool = False) -> None:
+    """Answer the command."""
+    text, suffixes = _schema() if what == "schema" else _starter(kind)
+    outputs = checked(output, suffixes)
+    if what == "new" and not force:
+        _refuse_overwriting(outputs)
+    if not outputs:
+        print(text, end="")
+    written({path: text_writer(text) for path in outputs})
+
+
+def _schema() -> tuple[str, Sequence[str]]:
+    from torsional.files import json_schema
+
+    return json.dumps(json_schema(), indent=1, ensure_ascii=False) + "\n", (".json",)
+
+
+def _starter(kind: str) -> tuple[str, Sequence[str]]:
+    from torsional.files import starter
+
+    return starter(kind), (".yaml", ".yml")
+
+
+def _refuse_overwriting(outputs: Sequence[Path]) -> None:
+    for path in outputs:
+        if path.exists():
+            raise ModelError("the file is there already", file=str(path), remedy="choose another name, or say --force")
