@@ -212,25 +212,33 @@ def _product(triangle: Array, b: Array) -> Array:
 
 
 @njit(cache=True)
-def _angles(dot: Array, p: Array, q: Array, cosine: Array, sine: Array, tolerance: float) -> bool:
-    """Jacobi angles that make two rows orthogonal, given their product and squared norms; false if none must turn."""
+def _must_turn(dot: Array, p: Array, q: Array, squared_tolerance: float) -> bool:
     turned = False
     for lane in range(dot.size):
-        turned |= abs(dot[lane]) > tolerance * np.sqrt(p[lane] * q[lane])
-    if not turned:
-        return False
+        turned |= dot[lane] * dot[lane] > squared_tolerance * p[lane] * q[lane]
+    return turned
+
+
+@njit(cache=True)
+def _angles(dot: Array, p: Array, q: Array, cosine: Array, sine: Array, squared_tolerance: float) -> None:
+    """Jacobi angles that make two rows orthogonal, given their product and squared norms, which are brought up to date.
+
+    tan 2φ = 2 p·q / (q² − p²), written with one division and two roots; an angle is zero where none is needed.
+    """
     for lane in range(dot.size):
         product = dot[lane]
-        turn = abs(product) > tolerance * np.sqrt(p[lane] * q[lane])
-        cotangent = (q[lane] - p[lane]) / (2.0 * product if turn else 1.0)
-        tangent = 1.0 / (abs(cotangent) + np.sqrt(1.0 + cotangent * cotangent))
-        tangent = tangent if cotangent >= 0.0 else -tangent
-        tangent = tangent if turn else 0.0
-        cosine[lane] = 1.0 / np.sqrt(1.0 + tangent * tangent)
-        sine[lane] = cosine[lane] * tangent
-        p[lane] -= tangent * product
-        q[lane] += tangent * product
-    return True
+        turn = product * product > squared_tolerance * p[lane] * q[lane]
+        twice = 2.0 * product if turn else 0.0
+        apart = q[lane] - p[lane] if turn else 1.0
+        far = abs(apart) + np.sqrt(apart * apart + twice * twice)
+        root = np.sqrt(far * far + twice * twice)
+        inverse = 1.0 / (far * root)
+        signed = twice if apart >= 0.0 else -twice
+        cosine[lane] = far * far * inverse if turn else 1.0
+        sine[lane] = signed * far * inverse
+        shift = signed * root * inverse * product
+        p[lane] -= shift
+        q[lane] += shift
 
 
 @njit(cache=True)
@@ -252,7 +260,7 @@ def orthogonalize_rows(a: Array) -> Array:
     more, so its neighbours cannot change it.
     """
     rank, columns, lanes = a.shape
-    tolerance = columns * 2.3e-16
+    tolerance = (columns * 2.3e-16) ** 2  # of the square of the cosine between two rows
     squares = np.empty((rank, lanes))
     dot, cosine, sine = np.empty(lanes), np.empty(lanes), np.empty(lanes)
     for _ in range(SWEEPS):
@@ -268,7 +276,8 @@ def orthogonalize_rows(a: Array) -> Array:
                 for t in range(columns):
                     for lane in range(lanes):
                         dot[lane] += a[i, t, lane] * a[j, t, lane]
-                if _angles(dot, squares[i], squares[j], cosine, sine, tolerance):
+                if _must_turn(dot, squares[i], squares[j], tolerance):
+                    _angles(dot, squares[i], squares[j], cosine, sine, tolerance)
                     _turn(a[i], a[j], cosine, sine)
                     turned = True
         if not turned:

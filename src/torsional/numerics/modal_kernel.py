@@ -97,7 +97,8 @@ def modes(elastic_weights: ArrayLike, stiffness: ArrayLike, mass_weights: ArrayL
     for group, null in _structural(w, k):
         part = omega[group], shapes[group]
         solve_designs(_part(w, group), k[group], _part(v, group), J[group], null, *part)
-        omega[group], shapes[group] = part
+        if not isinstance(group, slice):  # then the part is a copy
+            omega[group], shapes[group] = part
     return Modes(omega[0], shapes[0]) if single else Modes(omega, shapes)
 
 

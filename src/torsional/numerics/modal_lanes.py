@@ -165,12 +165,43 @@ def _sorted_out(unit: Array, frequency: Array, order: IntArray, omega: Array, sh
 
 
 @njit(cache=True)
-def _chunk(w: Array, k: Array, v: Array, inertia: Array, null: Array, omega: Array, shapes: Array) -> None:
+def _is_diagonal(mass_weights: Array) -> bool:
+    """Whether each mass moves with one coordinate alone."""
+    for i in range(mass_weights.shape[0]):
+        count = 0
+        for j in range(mass_weights.shape[1]):
+            count += mass_weights[i, j] != 0.0
+        if count > 1:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _mass_triangle(weights: Array, inertia: Array, diagonal: bool) -> tuple[Array, IntArray]:
+    """R of M = Rᵀ R and the order of its columns; roots of sums where M is diagonal."""
+    lanes, nodes = len(inertia), weights.shape[2]
+    order = counted(nodes, lanes)
+    root = _weighted(weights, inertia, order)
+    if not diagonal:
+        return root, pivoted_qr(root, nodes)
+    triangle = np.zeros((nodes, nodes, lanes))
+    for j in range(nodes):
+        for i in range(len(root)):
+            for lane in range(lanes):
+                triangle[j, j, lane] += root[i, j, lane] * root[i, j, lane]
+        for lane in range(lanes):
+            triangle[j, j, lane] = np.sqrt(triangle[j, j, lane])
+    return triangle, order
+
+
+@njit(cache=True)
+def _chunk(
+    w: Array, k: Array, v: Array, inertia: Array, null: Array, omega: Array, shapes: Array, diagonal: bool
+) -> None:
     """Modes of one chunk of designs: the whole algorithm on one page."""
     lanes, nodes = omega.shape
     rigid = null.shape[2]
-    mass = _weighted(v, inertia, counted(nodes, lanes))
-    order = pivoted_qr(mass, nodes)
+    mass, order = _mass_triangle(v, inertia, diagonal)
     elastic = _weighted(w, k, order)
     _divide_right(elastic, mass)
     elastic, pivots = graded_rows(elastic, nodes - rigid)
@@ -186,9 +217,14 @@ def _chunk(w: Array, k: Array, v: Array, inertia: Array, null: Array, omega: Arr
 
 @njit(cache=True)
 def solve_designs(w: Array, k: Array, v: Array, inertia: Array, null: Array, omega: Array, shapes: Array) -> None:
-    for a in range(0, len(k), LANES):
-        b = min(a + LANES, len(k))
+    """Fill ``omega`` (designs, nodes) and ``shapes`` (designs, nodes, modes), a run of like designs at a time."""
+    a = 0
+    while a < len(k):
+        diagonal, b = _is_diagonal(_own(v, a)), a + 1
+        while b < min(a + LANES, len(k)) and (len(v) == 1 or _is_diagonal(_own(v, b)) == diagonal):
+            b += 1
         w_ab = w[a:b] if len(w) > 1 else w
         v_ab = v[a:b] if len(v) > 1 else v
         null_ab = null[a:b] if len(null) > 1 else null
-        _chunk(w_ab, k[a:b], v_ab, inertia[a:b], null_ab, omega[a:b], shapes[a:b])
+        _chunk(w_ab, k[a:b], v_ab, inertia[a:b], null_ab, omega[a:b], shapes[a:b], diagonal)
+        a = b

@@ -40,7 +40,7 @@ def damped_modes(
     """Damped modes of (λ² M + λ C + K) φ = 0, with M = Vᵀ diag(J) V, C = Dᵀ diag(c) D and K = Wᵀ diag(k) W.
 
     ``elastic_weights`` W (rows, nodes), ``stiffness`` k (rows,) [Nm/rad], ``damping_weights`` D (rows, nodes),
-    ``damping`` c ≥ 0 (rows,) [Nms/rad], ``mass_weights`` V (masses, nodes), ``inertia`` J (masses,) [kg m²].  Rigid
+    ``damping`` c (rows,) [Nms/rad], ``mass_weights`` V (masses, nodes), ``inertia`` J (masses,) [kg m²].  Rigid
     modes that nothing damps appear once, with λ = 0; one that a damper to ground holds has λ = 0 and a real root.
     Raises ModelError as ``modes`` does.  Source: Tisseur and Meerbergen, SIAM Review 43 (2001) 235,
     doi 10.1137/S0036144500381988.
@@ -54,11 +54,11 @@ def damped_modes(
     omega, shapes = modes(elastic_weights, stiffness, mass_weights, inertia)
     weights, c = np.atleast_2d(np.asarray(damping_weights, dtype=float)), np.asarray(damping, dtype=float)
     elastic = np.asarray(elastic_weights, dtype=float)[np.asarray(stiffness, dtype=float) > 0.0]
-    free = null_vectors(np.vstack([elastic, weights[c > 0.0]])).shape[1]
+    free = null_vectors(np.vstack([elastic, weights[c != 0.0]])).shape[1]
     rigid = int(np.count_nonzero(omega == 0.0))
-    modal = np.sqrt(c)[:, np.newaxis] * (weights @ shapes)
-    shapes, modal = _undamped_first(shapes, modal, rigid)
-    values, vectors = _solve(omega[free:], modal[:, free:], rigid - free)
+    shapes = _undamped_first(shapes, np.sqrt(np.abs(c))[:, np.newaxis] * (weights @ shapes[:, :rigid]))
+    modal = weights @ shapes[:, free:]
+    values, vectors = _solve(omega[free:], modal.T @ (c[:, np.newaxis] * modal), rigid - free)
     eigenvalues = np.concatenate([np.zeros(free, complex), values])
     padded = np.zeros((len(omega), len(eigenvalues)), complex)
     padded[:free, :free] = np.eye(free)
@@ -66,23 +66,20 @@ def damped_modes(
     return _presented(eigenvalues, shapes.astype(complex) @ padded)
 
 
-def _undamped_first(shapes: Array, modal: Array, rigid: int) -> tuple[Array, Array]:
-    """Turn the rigid modes among themselves so that those without damping come first."""
-    turn = np.linalg.svd(modal[:, :rigid], full_matrices=True)[2][::-1].T
-    turned, damped = shapes.copy(), modal.copy()
-    turned[:, :rigid] = shapes[:, :rigid] @ turn
-    damped[:, :rigid] = modal[:, :rigid] @ turn
-    return turned, damped
+def _undamped_first(shapes: Array, slip: Array) -> Array:
+    """Turn the rigid modes among themselves so that those whose dampers do not ``slip`` (rows, rigid) come first."""
+    rigid = slip.shape[1]
+    turn = np.linalg.svd(slip, full_matrices=True)[2][::-1].T
+    return np.hstack([shapes[:, :rigid] @ turn, shapes[:, rigid:]])
 
 
-def _solve(omega: Array, modal: Array, held: int) -> tuple[ComplexArray, ComplexArray]:
+def _solve(omega: Array, damping: Array, held: int) -> tuple[ComplexArray, ComplexArray]:
     """Eigenvalues and modal coordinates; the first ``held`` modes have no stiffness but damping.
 
     States are the velocities and ω times the elastic positions, so ``[[-C, -diag ω], [diag ω, 0]]`` is evenly scaled.
     A mode without stiffness needs no position: its λ = 0 is known beforehand.
     """
     count = len(omega)
-    damping = modal.T @ modal
     coupling = np.diag(omega)[:, held:]
     state = np.block([[-damping, -coupling], [coupling.T, np.zeros((count - held, count - held))]])
     found, vectors = np.linalg.eig(state)
