@@ -1,0 +1,1 @@
+"""Questions asked of whole models: many runs, one answer."""

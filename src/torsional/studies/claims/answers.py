@@ -1,0 +1,169 @@
+"""What the claims ask again and again: order responses at the gearbox input, modes by gear, where a curve is lowest.
+
+Amplitudes are those of one order, half peak-to-peak.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize_scalar
+
+from torsional.engine import Engine
+from torsional.errors import ModelError
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.quantities import acceleration
+from torsional.results import dataset
+from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.modal import modal
+from torsional.solvers.operating import operated
+from torsional.studies.claims.trucks import reached
+
+Curves: TypeAlias = Mapping[str, ArrayLike]
+LOAD = 0.6
+"""Mean torque of linear comparisons over the peak of the full-load curve."""
+INPUT = "mean torque 60 % of the peak, top gear; firing order's acceleration at the gearbox input, half peak-to-peak"
+"""Condition of most comparisons of amplitudes."""
+STEP = 10 * RPM
+"""Step of speed grids [rad/s]."""
+
+
+def speeds(model: Model, step: float = STEP) -> Array:
+    """Mean speeds of the operating range [rad/s]."""
+    low, high = model.operation.speed
+    return np.linspace(low, high, round((high - low) / step) + 1)
+
+
+def mean_torque(model: Model) -> float:
+    """The mean torque of linear comparisons [Nm]."""
+    return LOAD * model.full_load_peak()
+
+
+def engine_of(model: Model) -> Engine:
+    """The model's engine; raises ModelError without one."""
+    if model.engine is None:
+        raise ModelError("the model has no engine", where="engine", remedy="add an engine block")
+    return model.engine
+
+
+def main_order(model: Model) -> float:
+    """The firing order: half the number of cylinders."""
+    return engine_of(model).layout.cylinders / 2
+
+
+def responded(
+    model: Model,
+    speed: Array,
+    torque: ArrayLike | None = None,
+    gear: str | None = None,
+    orders: ArrayLike | None = None,
+) -> xr.Dataset:
+    """Order response over ``speed`` under a mean torque (one, or one a speed), linear about the first of them.
+
+    ``orders``: the firing order alone unless given.
+    """
+    means = np.broadcast_to(mean_torque(model) if torque is None else np.asarray(torque, dtype=float), speed.shape)
+    system, _ = operated(model, float(means[0]), gear)
+    asked = [main_order(model)] if orders is None else orders
+    nodes: Sequence[str] = model.landmarks.throws
+    if len(nodes) == 1:  # a lumped engine
+        nodes = nodes[0]
+    return harmonic_response(system, engine_of(model).excitation(nodes, speed, means, asked))
+
+
+def at_input(model: Model, speed: Array, torque: ArrayLike | None = None, gear: str | None = None) -> Array:
+    """Amplitude of the firing order's acceleration at the gearbox input [rad/s²], half peak-to-peak, over speed."""
+    found = acceleration(responded(model, speed, torque, gear).angle.sel(node=model.landmarks.input))
+    return np.asarray(np.abs(found.isel(order=0).values))
+
+
+def input_shaft(model: Model) -> str:
+    """The connection that brings torque to the gearbox input from the engine's side."""
+    powertrain, node = model.powertrain(), model.landmarks.input
+    for name in (stamp.name for stamp in powertrain.stamps if node in stamp.weights):
+        cut = reached(powertrain, [node], [name])
+        if not cut & set(model.landmarks.throws):
+            return name
+    raise ModelError("no single connection brings the torque to the input", where=node)
+
+
+def modes(model: Model, gear: str | None = None) -> xr.Dataset:
+    """Undamped elastic modes about the mean torque, with the ``order_speed`` [rad/s] of the firing order."""
+    system, _ = operated(model, mean_torque(model), gear)
+    found = modal(system)
+    found = found.isel(mode=np.flatnonzero(found.frequency.values > 0))
+    return found.assign(order_speed=("mode", 2 * np.pi * found.frequency.values / main_order(model)))
+
+
+def mode_of(found: xr.Dataset, *elements: str) -> int:
+    """Place of the mode with the largest share of elastic energy in some connections."""
+    return int(found.elastic_share.sel(element=list(elements)).sum("element").values.argmax())
+
+
+def by_gear(model: Model, *elements: str) -> tuple[Array, Array, list[str]]:
+    """Of the mode that lives in ``elements``, for every gear: order speed [rpm], their energy share, the largest one's
+    name."""
+    rpm, share, dominant = [], [], []
+    for gear in model.gear_names:
+        found = modes(model, gear)
+        place = mode_of(found, *elements)
+        energy = found.elastic_share.isel(mode=place)
+        rpm.append(float(found.order_speed[place]) / RPM)
+        share.append(float(energy.sel(element=list(elements)).sum()))
+        dominant.append(str(energy.element.values[int(energy.values.argmax())]))
+    return np.array(rpm), np.array(share), dominant
+
+
+def lowest(curve: Callable[[Array], Array], grid: Array) -> float:
+    """Where a curve is lowest: the lowest grid point, then Brent's bounded search between its neighbours."""
+    best = int(np.argmin(curve(grid)))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+
+    def at(x: float) -> float:
+        return float(curve(np.array([x]))[0])
+
+    return float(minimize_scalar(at, bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high}).x)
+
+
+def falling(values: ArrayLike) -> bool:
+    """Whether values fall strictly along the first axis."""
+    return bool(np.all(np.diff(np.asarray(values), axis=0) < 0))
+
+
+def rising(values: ArrayLike) -> bool:
+    """Whether values rise strictly along the first axis."""
+    return bool(np.all(np.diff(np.asarray(values), axis=0) > 0))
+
+
+def curves(id: str, speed: Array, quantity: str, **values: ArrayLike) -> xr.Dataset:
+    """Curves over speed, one variable each, for the pictures of a claim."""
+    told = {name: (("speed",), np.asarray(value), quantity) for name, value in values.items()}
+    return dataset(told, {"speed": (speed, "speed")}, analysis=f"claim {id}", amplitude="half peak-to-peak")
+
+
+def sweep(id: str, over: str, at: ArrayLike, quantity: str, **values: tuple[ArrayLike, str]) -> xr.Dataset:
+    """Values over a swept parameter ``over`` of some ``quantity``, one variable each with its own quantity."""
+    told = {name: ((over,), np.asarray(value), kind) for name, (value, kind) in values.items()}
+    return dataset(told, {over: (np.asarray(at, dtype=float), quantity)}, analysis=f"claim {id}")
+
+
+def by_gear_dataset(id: str, model: Model, **values: tuple[ArrayLike, str]) -> xr.Dataset:
+    """Values for every gear, one variable each with its quantity."""
+    told = {name: (("gear",), np.asarray(value), kind) for name, (value, kind) in values.items()}
+    return dataset(told, {"gear": (np.array(model.gear_names), "")}, analysis=f"claim {id}", model=model.name)
+
+
+def floats(values: ArrayLike) -> tuple[float, ...]:
+    """An array as figures."""
+    return tuple(float(value) for value in np.ravel(np.asarray(values)))
+
+
+def span(speed: Array) -> str:
+    """The ends of a set of speeds [rad/s] in words."""
+    low, high = speed.min() / RPM, speed.max() / RPM
+    return f"{low:.0f} rpm" if low == high else f"{low:.0f}–{high:.0f} rpm"

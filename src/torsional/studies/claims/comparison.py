@@ -1,0 +1,199 @@
+"""Claims that set a dual mass flywheel beside a single mass flywheel over the whole range (A10, A11, A14)."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from torsional.components import Component
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.quantities import acceleration, swing
+from torsional.results import dataset
+from torsional.solvers.map import HALF_ORDERS, response_map
+from torsional.stamps import GROUND
+from torsional.studies.claims.answers import (
+    INPUT,
+    at_input,
+    floats,
+    main_order,
+    modes,
+    rising,
+    span,
+    speeds,
+    sweep,
+)
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, mapped, reached, replaced, sprung, stiffness
+
+TORQUES = 7
+STEP = 25 * RPM
+LIGHT = 0.2
+"""Clutch damping of a variant that shows what the clutch mode can do, over the shipped one."""
+
+
+def input_map(model: Model, speed: Array, torque: Array, orders: Array) -> xr.DataArray:
+    """Acceleration orders at the gearbox input over gear, torque and speed, complex 0-peak; NaN beyond full load."""
+    found = response_map(model, speed, torque, orders=orders, nodes=[model.landmarks.input], elements=[])
+    inside = found.within_full_load.astype(bool)
+    return acceleration(found.angle.isel(node=0)).where(inside)
+
+
+@claim(
+    "A10",
+    "abstract, 6.1",
+    "Vibration is generally lower with a dual than with a single mass flywheel, yet some conditions excite resonance.",
+    "amplitudes over speed × torque × gear, dual over single: median below one half; cells above 1 are named, and a "
+    "resonance in the range shows",
+)
+def a10(trucks: Trucks) -> Finding:
+    speed, torque = speeds(trucks.smf, STEP), trucks.smf.torques(TORQUES)[1:]
+    order = np.array([main_order(trucks.smf)])
+    double = input_map(trucks.dmf, speed, torque, order).isel(order=0)
+    ratio = abs(double) / abs(input_map(trucks.smf, speed, torque, order).isel(order=0))
+    light = _ratio(lightly(trucks.dmf), lightly(trucks.smf), speed, torque, order)
+    cycle = _ratio(trucks.dmf, trucks.smf, speed[::2], torque[1::2], HALF_ORDERS)
+    figures: dict[str, Figure] = {
+        "median ratio, firing order [-]": float(ratio.median()),
+        "largest ratio, firing order [-]": float(ratio.max()),
+        "cells above 1": _named(ratio),
+        "swing over the cycle: median ratio [-]": float(cycle.median()),
+        "swing over the cycle: largest ratio [-]": float(cycle.max()),
+        "swing over the cycle: cells above 1": _named(cycle),
+        "DMF: gears with a resonance above idle": _resonant(abs(double)),
+        f"clutch damping × {LIGHT:g}: median ratio [-]": float(light.median()),
+        f"clutch damping × {LIGHT:g}: cells above 1": _named(light),
+    }
+    data = dataset(
+        {"ratio": (("gear", "torque", "speed"), ratio.transpose("gear", "torque", "speed").values, "ratio")},
+        {"gear": (ratio.gear.values, ""), "torque": (torque, "torque"), "speed": (speed, "speed")},
+        analysis="claim A10",
+    )
+    condition = "acceleration at the gearbox input inside the full-load curve, all gears; half peak-to-peak"
+    good = float(ratio.median()) < 0.5 and bool(_resonant(abs(double)))
+    return Finding(good, condition, figures, dataset=data)
+
+
+def lightly(model: Model) -> Model:
+    """A copy with little damping in the clutch."""
+    clutch: Any = model.components[model.landmarks.clutch]
+    return replaced(model, model.landmarks.clutch, damping=LIGHT * clutch.damping)
+
+
+def _ratio(above: Model, below: Model, speed: Array, torque: Array, orders: Array) -> xr.DataArray:
+    """Swing of the input acceleration of one model over that of another."""
+    pair = [swing(input_map(model, speed, torque, orders), 360) for model in (above, below)]
+    return pair[0] / pair[1]
+
+
+def _named(ratio: xr.DataArray) -> tuple[str, ...]:
+    """Gears with ratios above 1 and the speeds between which they occur."""
+    told = []
+    for gear in ratio.gear.values:
+        above = ratio.speed.values[(ratio.sel(gear=gear) > 1).any("torque").values]
+        told += [f"gear {gear}: {span(above)}"] if above.size else []
+    return tuple(told)
+
+
+def _resonant(amplitude: xr.DataArray) -> tuple[str, ...]:
+    """Gears in which the amplitude over speed at half of the peak torque has a maximum above idle, and its speed."""
+    found = []
+    for gear in amplitude.gear.values:
+        curve = amplitude.sel(gear=gear).isel(torque=amplitude.torque.size // 2).values
+        inner = np.flatnonzero((curve[1:-1] > curve[:-2]) & (curve[1:-1] > curve[2:])) + 1
+        if inner.size:
+            best = inner[curve[inner].argmax()]
+            found.append(f"gear {gear}: {amplitude.speed.values[best] / RPM:.0f} rpm")
+    return tuple(found)
+
+
+@claim(
+    "A11",
+    "2.2.1",
+    "A softer dual mass flywheel isolates better but carries less torque.",
+    "over a 4:1 sweep of the spring's stiffness, amplitude at speeds above the resonances rises strictly with it; "
+    "bottoming torque at a fixed travel reported",
+)
+def a11(trucks: Trucks) -> Finding:
+    model, spring = trucks.dmf, trucks.dmf.landmarks.springs[0]
+    k = stiffness(model, spring) * np.geomspace(0.5, 2.0, 5)
+    variants = [sprung(model, spring, value) for value in k]
+    speed = speeds(model)
+    above = 1.1 * resonances(variants[-1], spring)
+    speed = speed[speed > above]
+    table = np.array([at_input(variant, speed) for variant in variants])
+    travel = 0.8 * float(model.full_load_peak() / k[0])
+    figures: dict[str, Figure] = {
+        "stiffness [Nm/rad]": floats(k),
+        "speeds above [rpm]": above / RPM,
+        "amplitude at the middle speed [rad/s²]": floats(table[:, speed.size // 2]),
+        "travel of the fixed design [rad]": travel,
+        "bottoming torque [Nm]": floats(k * travel),
+    }
+    quantities = {"amplitude": (table[:, speed.size // 2], "acceleration"), "bottoming_torque": (k * travel, "torque")}
+    data = sweep("A11", "stiffness", k, "stiffness", **quantities)
+    return Finding(rising(table), INPUT, figures, dataset=data)
+
+
+def resonances(model: Model, spring: str) -> float:
+    """Order speed [rad/s] of the highest mode in the range that lives in absorber spring or clutch damper."""
+    found = modes(model)
+    share = found.elastic_share.sel(element=[spring, model.landmarks.clutch]).sum("element").values
+    speed = found.order_speed.values[(share > 0.5)]
+    return float(speed[speed < model.operation.speed[1]].max())
+
+
+def behind_clutch(model: Model, gear: str) -> set[str]:
+    """Connections behind the clutch damper."""
+    powertrain = model.powertrain(gear)
+    nodes = reached(powertrain, [model.landmarks.input], [model.landmarks.clutch])
+    return {stamp.name for stamp in powertrain.stamps if set(stamp.weights) <= nodes | {GROUND}}
+
+
+def damped(model: Model, factor: float) -> Model:
+    """A copy whose damping behind the clutch is multiplied: viscous damping and loss factors."""
+    behind = {name for gear in model.gear_names for name in behind_clutch(model, gear)}
+
+    def change(parts: dict[str, Component]) -> dict[str, Component]:
+        return {name: _scaled(part, factor) if name in behind else part for name, part in parts.items()}
+
+    return mapped(model, change)
+
+
+def _scaled(part: Component, factor: float) -> Component:
+    known: Any = part
+    fields = {key: factor * getattr(part, key) for key in ("damping", "loss_factor") if hasattr(part, key)}
+    scaled: Component = dataclasses.replace(known, **fields) if fields else part
+    return scaled
+
+
+@claim(
+    "A14",
+    "4.1",
+    "Damping behind the clutch hardly affects the steady vibration into the gearbox.",
+    "±50 % of all damping behind the clutch changes the amplitude by less than 5 % over at least 90 % of the range of "
+    "speeds and gears; exceptions named",
+)
+def a14(trucks: Trucks) -> Finding:
+    speed, figures, good = speeds(trucks.smf, STEP), dict[str, Figure](), True
+    for name, model in (("SMF", trucks.smf), ("DMF", trucks.dmf)):
+        change = np.array([_changes(model, speed, gear) for gear in model.gear_names])
+        named = {gear: speed[row > 0.05] for gear, row in zip(model.gear_names, change, strict=True)}
+        figures |= {
+            f"{name}: largest change [%]": 100 * float(change.max()),
+            f"{name}: cells under 5 % [%]": 100 * float((change < 0.05).mean()),
+            f"{name}: exceptions": tuple(f"gear {g}: {span(v)}" for g, v in named.items() if v.size),
+        }
+        good &= bool((change < 0.05).mean() > 0.9)
+    condition = "mean torque 60 % of the peak, all gears; firing order's acceleration at the gearbox input"
+    return Finding(good, condition, figures)
+
+
+def _changes(model: Model, speed: Array, gear: str) -> Array:
+    """Larger of both relative changes over speed in one gear."""
+    own = at_input(model, speed, gear=gear)
+    both = [np.abs(at_input(damped(model, factor), speed, gear=gear) / own - 1) for factor in (0.5, 1.5)]
+    return np.maximum(*both)

@@ -1,0 +1,222 @@
+"""Claims about the power split absorber (C1 to C3, C6)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from torsional.absorbers import cancellation_frequency
+from torsional.components import Inertia, PlanetSpin, Superposition
+from torsional.engine import Excitation
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array, ComplexArray
+from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.operating import operated
+from torsional.studies.claims.answers import (
+    INPUT,
+    at_input,
+    curves,
+    engine_of,
+    falling,
+    floats,
+    lowest,
+    main_order,
+    mean_torque,
+    responded,
+    rising,
+    speeds,
+    sweep,
+)
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, merged, only, replaced, sprung, stiffness
+
+WIDE = np.linspace(300.0, 3000.0, 136) * RPM
+"""Speeds among which cancellation is looked for [rad/s]."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The numbers of a power split absorber: k, J2, J3, J4, planet ratio g, gear quotient r; its nodes and springs."""
+
+    k: float
+    J2: float
+    J3: float
+    J4: float
+    g: float
+    r: float
+    nodes: tuple[str, str, str]
+    springs: str
+    planets: str
+    gear: str
+
+    @classmethod
+    def of(cls, model: Model) -> Parts:
+        """Read off a truck with a power split absorber."""
+        gear, planets, springs = only(model, Superposition), only(model, PlanetSpin), model.landmarks.springs[0]
+        train: Any = model.components[gear]
+        spin: Any = model.components[planets]
+        inertia = {node: inertia_at(model, node) for node in (train.b, train.node)}
+        k, nodes = stiffness(model, springs), (train.a, train.b, train.node)
+        J2, J4 = inertia[train.b], inertia[train.node]
+        return cls(k, J2, spin.inertia, J4, spin.ratio, train.ratio, nodes, springs, planets, gear)
+
+    def cancellation(self) -> float:
+        """Angular frequency [rad/s] at which the undamped absorber's output stands still."""
+        return cancellation_frequency(self.k, self.J2, self.J3, self.g, self.r)
+
+    def planets_for(self, omega: float, quotient: float) -> float:
+        """Planet inertia [kgm²] that moves the cancellation to ω: J3 = (k/ω² − J2 (1 − r)) / (g (g − r))."""
+        return (self.k / omega**2 - self.J2 * (1 - quotient)) / (self.g * (self.g - quotient))
+
+
+def inertia_at(model: Model, node: str) -> float:
+    """Inertia of the discs on a node [kgm²]."""
+    parts = [(name, part) for name, part in model.components.items() if isinstance(part, Inertia)]
+    return float(sum(part.inertia for name, part in parts if (part.node or name) == node))
+
+
+def damped(model: Model, damping: float) -> Model:
+    """A copy with this viscous damping beside the absorber's springs [Nms/rad]."""
+    return replaced(model, model.landmarks.springs[0], damping=damping)
+
+
+def transfer(model: Model) -> Callable[[Array], ComplexArray]:
+    """Angle of the output over that of the primary at the firing order, as a function of speed."""
+    first, _, output = Parts.of(model).nodes
+    system, order = operated(model, mean_torque(model))[0], main_order(model)
+
+    def ratio(speed: Array) -> ComplexArray:
+        angle = harmonic_response(system, Excitation.unit(first, [order], speed)).angle.isel(order=0)
+        return np.asarray(angle.sel(node=output).values / angle.sel(node=first).values)
+
+    return ratio
+
+
+def cancelled(model: Model) -> float:
+    """Speed [rad/s] at which the output of the undamped absorber is found to stand still against the primary."""
+    ratio = transfer(damped(model, 0.0))
+    return lowest(lambda speed: np.abs(ratio(speed)), WIDE)
+
+
+def paths(model: Model, speed: float) -> tuple[complex, complex, complex]:
+    """Torques on the output [Nm] by springs and by gears, and the engine's torque, complex 0-peak, at one speed.
+
+    Work on body 2 gives the output's torque λ = T_s/r − (J2 θ̈2 + g J3 θ̈3)/r: the springs' part, and the part that the
+    gears pass on beside it.
+    """
+    parts, n = Parts.of(model), main_order(model)
+    found = responded(model, np.array([speed])).isel(speed=0, order=0)
+    first, second, _ = (complex(found.angle.sel(node=node)) for node in parts.nodes)
+    third = (1 - parts.g) * first + parts.g * second
+    inertial = -((n * speed) ** 2) * (parts.J2 * second + parts.g * parts.J3 * third)
+    engine = engine_of(model).harmonics(speed, mean_torque(model), [n]).sum()
+    return complex(found.torque.sel(element=parts.springs)) / parts.r, -inertial / parts.r, complex(engine)
+
+
+def degrees(value: complex, reference: complex) -> float:
+    """Phase against a reference, 0 to 180 degrees either way."""
+    return float(abs(np.degrees(np.angle(value / reference))))
+
+
+@claim(
+    "C1",
+    "2.2.2, 6.1",
+    "A power split absorber cancels vibration near one speed: its spring path turns by about 180°, its gear path not.",
+    "anti-resonance found in the range; there the spring path's torque on the output is within 30° of opposite to the "
+    "engine's, the gear path's within 30° of it; amplitude below that of the corresponding dual mass flywheel",
+)
+def c1(trucks: Trucks) -> Finding:
+    model, speed = trucks.psva, speeds(trucks.psva)
+    at = cancelled(model)
+    spring, gear, engine = paths(model, at)
+    own, plain = at_input(model, speed), at_input(merged(model), speed)
+    there = np.array([at])
+    ratio = float(at_input(model, there)[0] / at_input(merged(model), there)[0])
+    figures: dict[str, Figure] = {
+        "cancellation found [rpm]": at / RPM,
+        "cancellation by closed form [rpm]": Parts.of(model).cancellation() / main_order(model) / RPM,
+        "phase of the spring path [°]": degrees(spring, engine),
+        "phase of the gear path [°]": degrees(gear, engine),
+        "amplitude over corresponding DMF there [-]": ratio,
+        "better than the DMF at [rpm]": floats(speed[own < plain][[0, -1]] / RPM),
+    }
+    low, high = model.operation.speed
+    good = low < at < high and degrees(spring, engine) > 150 and degrees(gear, engine) < 30 and ratio < 1
+    data = curves("C1", speed, "acceleration", psva=own, dmf=plain)
+    return Finding(good, INPUT, figures, dataset=data)
+
+
+@claim(
+    "C2",
+    "2.2.2, 6.1",
+    "More inertia and less stiffness move the cancellation to lower speed.",
+    "cancellation falls strictly with secondary and planet inertia and rises strictly with stiffness, each over 4:1",
+)
+def c2(trucks: Trucks) -> Finding:
+    model, factors = trucks.psva, np.geomspace(0.5, 2.0, 5)
+    p = Parts.of(model)
+    bodies = {
+        "secondary inertia": [replaced(model, p.nodes[1], inertia=f * p.J2) for f in factors],
+        "planet inertia": [replaced(model, p.planets, inertia=f * p.J3) for f in factors],
+        "stiffness": [sprung(model, p.springs, f * p.k) for f in factors],
+        "output inertia": [replaced(model, p.nodes[2], inertia=f * p.J4) for f in factors],
+    }
+    rpm = {name: np.array([cancelled(m) for m in variants]) / RPM for name, variants in bodies.items()}
+    figures: dict[str, Figure] = {f"over {name} × 0.5 to 2 [rpm]": floats(found) for name, found in rpm.items()}
+    good = falling(rpm["secondary inertia"]) and falling(rpm["planet inertia"]) and rising(rpm["stiffness"])
+    told = {name.replace(" ", "_"): (found * RPM, "speed") for name, found in rpm.items()}
+    condition = "speed at which the output of the undamped absorber stands still, top gear"
+    return Finding(good, condition, figures, dataset=sweep("C2", "factor", factors, "ratio", **told))
+
+
+@claim(
+    "C3",
+    "2.2.5, 6.1",
+    "Moving the quotient of both gear ratios away from 1 lowers the cancellation and raises vibration at high speed.",
+    "with r = (θ4 − θ1)/(θ2 − θ1) from 0.85 down to 0.5 (its inverse 1/r from 1.18 up to 2) the cancellation found "
+    "falls and the amplitude at speeds a quarter above the highest cancellation rises, both strictly",
+)
+def c3(trucks: Trucks) -> Finding:
+    p, quotient = Parts.of(trucks.psva), np.linspace(0.85, 0.5, 6)
+    variants = [replaced(trucks.psva, p.gear, ratio=float(r)) for r in quotient]
+    at = np.array([cancelled(model) for model in variants])
+    speed = speeds(trucks.psva)
+    speed = speed[speed > 1.25 * at[0]]
+    table = np.array([at_input(model, speed) for model in variants])
+    figures: dict[str, Figure] = {
+        "r [-] (as in §2.2.5: lower lowers)": floats(quotient),
+        "1/r [-] (as in §6.1: higher lowers)": floats(1 / quotient),
+        "cancellation [rpm]": floats(at / RPM),
+        "speeds above [rpm]": float(speed[0] / RPM),
+        "mean amplitude there [rad/s²]": floats(table.mean(axis=1)),
+    }
+    told = {"cancellation": (at, "speed"), "amplitude": (table.mean(axis=1), "acceleration")}
+    data = sweep("C3", "gear_quotient", quotient, "ratio", **told)
+    return Finding(falling(at) and rising(table), INPUT, figures, dataset=data)
+
+
+@claim(
+    "C6",
+    "5 (Paper C)",
+    "A power split absorber beats the corresponding dual mass flywheel significantly for a low level of damping only.",
+    "lowest ratio to that flywheel, both with the same damping, rises strictly with damping, from below 0.1 without "
+    "any to above 0.8 with much",
+)
+def c6(trucks: Trucks) -> Finding:
+    model, damping = trucks.psva, np.array([0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0])
+    speed = np.union1d(speeds(model), [cancelled(model)])
+    pairs = [(at_input(damped(model, c), speed), at_input(damped(merged(model), c), speed)) for c in damping]
+    ratio = np.array([own / plain for own, plain in pairs])
+    depth = ratio.min(axis=1)
+    half = float(np.interp(0.5, depth, damping))
+    figures: dict[str, Figure] = {
+        "damping [Nms/rad]": floats(damping),
+        "lowest ratio to the DMF [-]": floats(depth),
+        "damping at which the ratio is one half [Nms/rad]": half,
+        "part of the range better than the DMF [%]": floats(100 * (ratio < 1).mean(axis=1)),
+    }
+    data = sweep("C6", "damping", damping, "damping", lowest_ratio=(depth, "ratio"))
+    return Finding(rising(depth) and depth[0] < 0.1 and depth[-1] > 0.8, INPUT, figures, dataset=data)

@@ -1,0 +1,189 @@
+"""Claims about where the resonances of the single and the dual mass flywheel truck lie (A2 to A4, A6 to A8)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from torsional.components import Coupling, GearPair
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.operating import operated
+from torsional.studies.claims.answers import (
+    by_gear,
+    by_gear_dataset,
+    floats,
+    mean_torque,
+    mode_of,
+    modes,
+    rising,
+    sweep,
+)
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, lumped, replaced, sprung, stiffness
+
+SOFTEST = 0.5
+"""Softest feasible clutch damper over the shipped one: a truck's damper ends near 0.2 rad, where it must carry the peak
+of the full-load curve."""
+MODES = "undamped modes about 60 % of the peak torque; order speed: where the firing order meets the mode"
+
+
+def twists(model: Model, gear: str, place: int) -> dict[str, float]:
+    """Twist of every spring in one mode, referred to engine speed, the largest being one."""
+    system, _ = operated(model, mean_torque(model), gear)
+    c, share = system.connections, modes(model, gear).elastic_share.isel(mode=place).values
+    spring = c.stiffness > 0
+    twist = np.sqrt(share[spring] / c.stiffness[spring]) / np.abs(c.weights[spring]).max(axis=1)
+    names = [name for name, kept in zip(c.names, spring, strict=True) if kept]
+    return dict(zip(names, (twist / twist.max()).tolist(), strict=True))
+
+
+def tracked(model: Model, gear: str, place: int) -> float:
+    """Order speed [rpm] of the elastic mode with a number; modes of a chain do not cross when one spring changes."""
+    return float(modes(model, gear).order_speed[place]) / RPM
+
+
+def swept(model: Model, factors: Array, gear: str) -> Array:
+    """Order speed [rpm] of the clutch mode over factors on the clutch damper's stiffness."""
+    place = mode_of(modes(model, gear), model.landmarks.clutch)
+    own = stiffness(model, model.landmarks.clutch)
+    return np.array([tracked(sprung(model, model.landmarks.clutch, own * f), gear, place) for f in factors])
+
+
+def without_damper(model: Model) -> Model:
+    """A copy whose clutch disc is rigid on the flywheel."""
+    name = model.landmarks.clutch
+    old = model.components[name]
+    assert isinstance(old, Coupling)
+    return replaced(model, name, GearPair(old.a, old.b, 1.0))
+
+
+def inside(model: Model, rpm: Array) -> tuple[str, ...]:
+    """Gears whose order speed lies in the operating range."""
+    low, high = model.operation.speed
+    return tuple(gear for gear, n in zip(model.gear_names, rpm, strict=True) if low <= n * RPM <= high)
+
+
+@claim(
+    "A2",
+    "2.1",
+    "With a single mass flywheel a torsional resonance meets the third order at low engine speed.",
+    "in top gear an elastic mode with its order speed in 500–900 rpm, its largest twist in clutch or driveline",
+)
+def a2(trucks: Trucks) -> Finding:
+    gear, found = trucks.smf.top_gear, modes(trucks.smf)
+    rpm = found.order_speed.values / RPM
+    places = np.flatnonzero((rpm > 500) & (rpm < 900))
+    largest = [max(t, key=lambda name: t[name]) for t in (twists(trucks.smf, gear, int(p)) for p in places)]
+    line = {stamp.name for stamp in lumped(trucks.smf).powertrain(gear).stamps}
+    figures: dict[str, Figure] = {
+        "order speeds [rpm]": floats(rpm[places]),
+        "largest twist in": tuple(largest),
+        "energy in the clutch [-]": floats(found.elastic_share.sel(element=trucks.smf.landmarks.clutch)[places]),
+    }
+    good = bool(largest) and set(largest) <= line
+    return Finding(good, f"gear {gear}; {MODES}", figures, dataset=found)
+
+
+@claim(
+    "A3",
+    "2.1",
+    "That resonance depends on the gear and on the driveline.",
+    "order speed of the clutch mode over all gears reported; more than 5 % between top gear and a low gear",
+)
+def a3(trucks: Trucks) -> Finding:
+    rpm, share, _ = by_gear(trucks.smf, trucks.smf.landmarks.clutch)
+    spread = float(np.max(np.abs(rpm / rpm[-1] - 1)))
+    figures: dict[str, Figure] = {"order speed by gear [rpm]": floats(rpm), "spread against top gear [%]": 100 * spread}
+    data = by_gear_dataset("A3", trucks.smf, order_speed=(rpm * RPM, "speed"), clutch_share=(share, "energy_share"))
+    return Finding(spread > 0.05, MODES, figures, dataset=data)
+
+
+@claim(
+    "A4",
+    "2.1",
+    "A softer clutch damper lowers that resonance, yet within feasible stiffness it stays in range for some gears.",
+    "order speed monotone over a 4:1 sweep of the damper's stiffness; at the softest feasible a gear is still inside",
+)
+def a4(trucks: Trucks) -> Finding:
+    model, factors = trucks.smf, np.geomspace(SOFTEST, 4 * SOFTEST, 5)
+    table = np.array([swept(model, factors, gear) for gear in model.gear_names])
+    soft = inside(model, table[:, 0])
+    own = stiffness(model, model.landmarks.clutch)
+    figures: dict[str, Figure] = {
+        "stiffness [Nm/rad]": floats(own * factors),
+        "top gear's order speed [rpm]": floats(table[-1]),
+        "first gear's order speed [rpm]": floats(table[0]),
+        "gears inside at the softest": soft,
+    }
+    data = sweep("A4", "stiffness", own * factors, "stiffness", top_gear=(table[-1] * RPM, "speed"))
+    return Finding(rising(table.T) and bool(soft), f"all gears; {MODES}", figures, dataset=data)
+
+
+@claim(
+    "A6",
+    "2.2.1, 6.1",
+    "The mode in which the two flywheels of a dual mass flywheel move against each other lies well below idle.",
+    "in every gear its order speed is below 0.8 of idle, more than half of its elastic energy in the springs",
+)
+def a6(trucks: Trucks) -> Finding:
+    model = trucks.dmf
+    rpm, share, _ = by_gear(model, *model.landmarks.springs)
+    idle = model.operation.idle / RPM
+    figures: dict[str, Figure] = {
+        "order speed by gear [rpm]": floats(rpm),
+        "energy in the DMF by gear [-]": floats(share),
+        "highest over idle [-]": float(rpm.max() / idle),
+    }
+    data = by_gear_dataset("A6", model, order_speed=(rpm * RPM, "speed"), spring_share=(share, "energy_share"))
+    return Finding(bool((rpm < 0.8 * idle).all() and (share > 0.5).all()), f"all gears; {MODES}", figures, dataset=data)
+
+
+@claim(
+    "A7",
+    "6.1",
+    "The clutch mode of the truck with a dual mass flywheel meets the third order in the operating range.",
+    "in every gear its order speed is inside the range, the largest share of its elastic energy in the clutch damper",
+)
+def a7(trucks: Trucks) -> Finding:
+    model = trucks.dmf
+    rpm, share, dominant = by_gear(model, model.landmarks.clutch)
+    good = len(inside(model, rpm)) == len(rpm) and set(dominant) == {model.landmarks.clutch}
+    figures: dict[str, Figure] = {
+        "order speed by gear [rpm]": floats(rpm),
+        "energy in the clutch by gear [-]": floats(share),
+    }
+    data = by_gear_dataset("A7", model, order_speed=(rpm * RPM, "speed"), clutch_share=(share, "energy_share"))
+    return Finding(good, f"all gears; {MODES}", figures, dataset=data)
+
+
+@claim(
+    "A8",
+    "6.1",
+    "A stiffer clutch damper raises the clutch mode but hardly out of range; without it a like mode stays in range.",
+    "monotone over a 1:8 sweep; with a rigid clutch the mode of the same number is still inside in the upper half of "
+    "the gears",
+)
+def a8(trucks: Trucks) -> Finding:
+    model, factors = trucks.dmf, np.geomspace(1.0, 8.0, 4)
+    table = np.array([swept(model, factors, gear) for gear in model.gear_names])
+    places = [mode_of(modes(model, gear), model.landmarks.clutch) for gear in model.gear_names]
+    bare = without_damper(model)
+    rigid = np.array([tracked(bare, gear, place) for gear, place in zip(model.gear_names, places, strict=True)])
+    kept = inside(model, rigid)
+    figures: dict[str, Figure] = {
+        "top gear over 1:8 [rpm]": floats(table[-1]),
+        "rigid clutch, by gear [rpm]": floats(rigid),
+        "gears inside with a rigid clutch": kept,
+        "top gear's weakest part": twisted(bare, model.top_gear, places[-1]),
+    }
+    good = rising(table.T) and set(model.gear_names[len(model.gear_names) // 2 :]) <= set(kept)
+    low = tuple(gear for gear in model.gear_names if gear not in kept)
+    reason = f"out of range in gears {', '.join(low)} with a rigid clutch" if low else ""
+    data = by_gear_dataset("A8", model, order_speed=(rigid * RPM, "speed"))
+    return Finding(good, f"all gears; {MODES}", figures, reason, data)
+
+
+def twisted(model: Model, gear: str, place: int) -> str:
+    """The connection with the largest share of elastic energy in one mode."""
+    share = modes(model, gear).elastic_share.isel(mode=place)
+    return str(share.element.values[int(share.values.argmax())])

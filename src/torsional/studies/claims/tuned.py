@@ -1,0 +1,200 @@
+"""Claims about a tuned absorber on the flange of a dual mass flywheel (D1 to D4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from torsional.absorbers import tuned_stiffness
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.powertrain import Powertrain
+from torsional.solvers.modal import natural_frequencies
+from torsional.solvers.operating import operated
+from torsional.studies.claims.answers import (
+    INPUT,
+    at_input,
+    curves,
+    falling,
+    floats,
+    lowest,
+    main_order,
+    mean_torque,
+    rising,
+    speeds,
+    sweep,
+)
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
+from torsional.system import assemble
+
+RING, SPRING = "tva", "tva_spring"
+INERTIAS = np.geomspace(0.02, 6.0, 24)
+"""Absorber inertias of the sweeps [kgm²], all tuned to the same speed."""
+MODES = "undamped modes about 60 % of the peak torque, top gear, as speeds at which the firing order meets them"
+
+
+SECONDARY = (
+    "on the secondary flywheel the added mode starts just below the tuning too, since clutch and gearbox hang on that "
+    "flywheel; there it stays close, and the resonance above moves up. With an open clutch the added one lies above"
+)
+
+
+def tuning(model: Model) -> float:
+    """Engine speed [rad/s] at which the firing order meets the absorber's own frequency."""
+    ring: Any = model.components[RING]
+    spring: Any = model.components[SPRING]
+    return float(np.sqrt(spring.stiffness / ring.inertia)) / main_order(model)
+
+
+def sized(model: Model, inertia: float, carrier: str = "") -> Model:
+    """A copy whose absorber has another inertia, the same tuning and, if named, another carrier."""
+    k = tuned_stiffness(float(inertia), tuning(model) * main_order(model))
+    fields: dict[str, Any] = {"stiffness": k, **({"a": carrier} if carrier else {})}
+    return replaced(replaced(model, RING, inertia=float(inertia)), SPRING, **fields)
+
+
+def order_speeds(model: Model) -> Array:
+    """Order speeds [rad/s] of the undamped elastic modes in top gear."""
+    system, _ = operated(model, mean_torque(model))
+    return _elastic(natural_frequencies(system)) / main_order(model)
+
+
+def _elastic(omega: Array) -> Array:
+    return np.asarray(omega[omega > 0])
+
+
+def flywheel_alone(model: Model) -> Array:
+    """Order speeds [rad/s] of engine and flywheel with an open clutch."""
+    for spring in model.landmarks.springs:
+        model = sprung(model, spring, stiffness(model, spring))
+    nodes = reached(model.powertrain(), [model.landmarks.crankshaft], [model.landmarks.clutch])
+    return _elastic(natural_frequencies(assemble(Powertrain(within(model, nodes))))) / main_order(model)
+
+
+def added(model: Model, resonances: Callable[[Model], Array] = order_speeds) -> float:
+    """Order speed [rad/s] of the resonance that the absorber adds.
+
+    Of N + 1 modes it is the one after those that the line without the absorber has below the tuning: with a vanishing
+    absorber it starts at the tuning, and the modes of a line do not cross as the absorber grows.
+    """
+    below = int((resonances(without(model, RING, SPRING)) < tuning(model)).sum())
+    return float(resonances(model)[below])
+
+
+@claim(
+    "D1",
+    "2.2.3",
+    "A tuned absorber reduces vibration near its tuning frequency and adds one resonance.",
+    "one undamped mode more than without it; with the absorber undamped the gearbox input's amplitude is lowest at the "
+    "tuning speed (to 0.1 %), and as shipped it is below half of that without the absorber",
+)
+def d1(trucks: Trucks) -> Finding:
+    model, speed = trucks.tva, speeds(trucks.tva)
+    plain, at = without(model, RING, SPRING), tuning(model)
+    near = np.linspace(0.9, 1.1, 41) * at
+    bare = replaced(model, SPRING, damping=0.0)
+    found = lowest(lambda v: at_input(bare, v) / at_input(plain, v), near)
+    there, best = (float((at_input(m, np.array([at])) / at_input(plain, np.array([at])))[0]) for m in (model, bare))
+    more = order_speeds(model).size - order_speeds(plain).size
+    figures: dict[str, Figure] = {
+        "modes more [-]": float(more),
+        "tuning speed [rpm]": at / RPM,
+        "lowest, absorber undamped [rpm]": found / RPM,
+        "ratio to no absorber there, undamped [-]": best,
+        "ratio to no absorber there, as shipped [-]": there,
+        "added resonance [rpm]": added(model) / RPM,
+    }
+    data = curves("D1", speed, "acceleration", with_absorber=at_input(model, speed), without=at_input(plain, speed))
+    good = more == 1 and abs(found / at - 1) < 1e-3 and there < 0.5
+    return Finding(good, INPUT, figures, dataset=data)
+
+
+@claim(
+    "D2",
+    "2.2.3, 6.1",
+    "With the absorber on the intermediate flange the added resonance lies below the tuning frequency.",
+    "for every absorber inertia of a sweep; shown beside the absorber on the secondary flywheel",
+)
+def d2(trucks: Trucks) -> Finding:
+    model, at = trucks.tva, tuning(trucks.tva)
+    last: Any = model.components[model.landmarks.springs[-1]]
+    own: Any = model.components[RING]
+    flange = np.array([added(sized(model, J)) for J in INERTIAS])
+    secondary = np.array([added(sized(model, J, last.a)) for J in INERTIAS])
+    beside = [sized(model, own.inertia, carrier) for carrier in ("", last.a)]
+    lone = [added(m, flywheel_alone) for m in beside]
+    figures: dict[str, Figure] = {
+        "inertias [kgm²]": floats(INERTIAS[[0, -1]]),
+        "on the flange: added resonance [rpm]": floats(flange[[0, -1]] / RPM),
+        "on the secondary: added resonance [rpm]": floats(secondary[[0, -1]] / RPM),
+        "shipped inertia, flange: resonances about the tuning [rpm]": _about(order_speeds(beside[0]), at),
+        "shipped inertia, secondary: resonances about the tuning [rpm]": _about(order_speeds(beside[1]), at),
+        "no absorber: resonances about the tuning [rpm]": _about(order_speeds(without(model, RING, SPRING)), at),
+        "open clutch, flange: added resonance [rpm]": lone[0] / RPM,
+        "open clutch, secondary: added resonance [rpm]": lone[1] / RPM,
+    }
+    told = {"flange": (flange, "speed"), "secondary": (secondary, "speed")}
+    data = sweep("D2", "inertia", INERTIAS, "inertia", **told)
+    reason = SECONDARY if (secondary < at).all() and lone[1] > at else ""
+    return Finding(bool((flange < at).all()), MODES, figures, reason, data)
+
+
+def _about(resonances: Array, at: float) -> tuple[float, ...]:
+    """The resonances next to a speed, one on either side [rpm]."""
+    below, above = resonances[resonances < at], resonances[resonances > at]
+    return floats(np.array([below.max(initial=0.0), above.min()]) / RPM)
+
+
+@claim(
+    "D3",
+    "6.1",
+    "A large separation of added resonance and tuning needs a much larger absorber.",
+    "separation rises strictly with the absorber's inertia; to bring the resonance below 0.8 of idle the absorber must "
+    "have more inertia than the whole dual mass flywheel without it",
+)
+def d3(trucks: Trucks) -> Finding:
+    model, at = trucks.tva, tuning(trucks.tva)
+    apart = np.array([1 - added(sized(model, J)) / at for J in INERTIAS])
+    wanted = np.array([0.05, 0.1, 0.2, 1 - 0.8 * model.operation.idle / at])
+    needed = np.exp(np.interp(wanted, apart, np.log(INERTIAS), right=np.inf))
+    last: Any = model.components[model.landmarks.springs[-1]]
+    first: Any = model.components[model.landmarks.springs[0]]
+    bodies: list[Any] = [model.components[node] for node in (first.b, first.a, last.a)]
+    whole = sum(body.inertia for body in bodies)
+    figures: dict[str, Figure] = {
+        "separations of the tuning speed [%]": floats(100 * wanted),
+        "absorber inertia needed [kgm²]": floats(needed),
+        "dual mass flywheel without absorber [kgm²]": whole,
+        "shipped: separation [%]": 100 * (1 - added(model) / at),
+    }
+    data = sweep("D3", "inertia", INERTIAS, "inertia", separation=(apart, "ratio"))
+    return Finding(rising(apart) and bool(needed[-1] > whole), MODES, figures, dataset=data)
+
+
+@claim(
+    "D4",
+    "6.1",
+    "More damping lowers the added resonance's excitation and spoils the reduction.",
+    "over a sweep of the absorber's damping the largest amplitude around the added resonance falls strictly and the "
+    "amplitude at the tuning speed rises strictly",
+)
+def d4(trucks: Trucks) -> Finding:
+    model, at = trucks.tva, tuning(trucks.tva)
+    damping = np.array([0.5, 1.0, 2.0, 4.0, 8.0, 16.0])
+    around = np.linspace(0.95 * added(model), 0.99 * at, 81)
+    variants = [replaced(model, SPRING, damping=float(c)) for c in damping]
+    peak = np.array([at_input(m, around).max() for m in variants])
+    notch = np.array([at_input(m, np.array([at]))[0] for m in variants])
+    plain = float(at_input(without(model, RING, SPRING), np.array([at]))[0])
+    figures: dict[str, Figure] = {
+        "absorber damping [Nms/rad]": floats(damping),
+        "largest amplitude around the added resonance [rad/s²]": floats(peak),
+        "amplitude at the tuning speed [rad/s²]": floats(notch),
+        "without absorber at the tuning speed [rad/s²]": plain,
+    }
+    told = {"peak": (peak, "acceleration"), "notch": (notch, "acceleration")}
+    data = sweep("D4", "damping", damping, "damping", **told)
+    return Finding(falling(peak) and rising(notch), INPUT, figures, dataset=data)

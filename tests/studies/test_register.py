@@ -1,0 +1,91 @@
+"""The register of claims: all there, described, judged; what is not reproduced says why."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from torsional.studies.claims import CLAIMS, Outcome
+from torsional.studies.claims.base import Finding, shown
+
+LINEAR = [
+    "A1",
+    "A2",
+    "A3",
+    "A4",
+    "A6",
+    "A7",
+    "A8",
+    "A10",
+    "A11",
+    "A13",
+    "A14",
+    "A15",
+    "C1",
+    "C2",
+    "C3",
+    "C4",
+    "C5",
+    "C6",
+    "D1",
+    "D2",
+    "D3",
+    "D4",
+    "G1",
+]
+NOT_REPRODUCED = {"A1", "A13"}
+
+
+def test_every_linear_claim_is_there() -> None:
+    assert list(CLAIMS) == LINEAR
+    assert len(CLAIMS) == len(LINEAR)
+
+
+def test_an_unknown_claim() -> None:
+    with pytest.raises(KeyError):
+        CLAIMS["Z9"]
+
+
+@pytest.mark.parametrize("id", LINEAR)
+def test_described(id: str) -> None:
+    claim = CLAIMS[id].claim
+    assert claim.id == id
+    assert all(len(text) > 1 for text in (claim.section, claim.statement, claim.criterion))
+
+
+@pytest.mark.parametrize("id", LINEAR)
+def test_verdicts_on_the_shipped_truck(id: str, outcomes: dict[str, Outcome]) -> None:
+    """A change of verdict is a change of the truck or of the physics: look at the figures first."""
+    outcome = outcomes[id]
+    assert outcome.verdict == ("not reproduced" if id in NOT_REPRODUCED else "reproduced"), str(outcome)
+    assert outcome.finding.condition and outcome.finding.figures
+    assert outcome.finding.reproduced or outcome.finding.reason
+    for value in outcome.finding.figures.values():
+        assert isinstance(value, str) or np.ravel(np.asarray(value)).dtype.kind in "fU"
+    assert str(outcome).startswith(f"{id} {outcome.verdict}")
+
+
+@pytest.mark.parametrize("id", LINEAR)
+def test_curves_carry_units(id: str, outcomes: dict[str, Outcome]) -> None:
+    data = outcomes[id].finding.dataset
+    if data is not None:
+        assert all(
+            "units" in data[name].attrs
+            for name in data.data_vars
+            if data[name].dtype.kind == "f" and name != "order_speed"
+        )
+
+
+def test_figures_as_text() -> None:
+    assert shown(()) == "none"
+    assert shown((1.0, 2.5)) == "1, 2.5"
+    assert Finding(True, "c", {}).dataset is None
+
+
+def test_listing_the_claims_computes_nothing() -> None:
+    code = "import sys, torsional.studies.claims as c; list(c.CLAIMS); print('numpy' in sys.modules)"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
+    assert answer.stdout.strip() == "False"

@@ -1,0 +1,85 @@
+"""D1 to D4 and G1 against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from torsional.absorbers import CentrifugalPendulum
+from torsional.model import RPM
+from torsional.studies.claims import Outcome
+from torsional.studies.claims.answers import at_input
+from torsional.studies.claims.pendulum import on_single, quiet_order
+from torsional.studies.claims.trucks import Trucks, only, replaced, without
+from torsional.studies.claims.tuned import added, flywheel_alone, order_speeds, sized, tuning
+
+
+def test_tuned_to_650_rpm(trucks: Trucks) -> None:
+    assert tuning(trucks.tva) == pytest.approx(650 * RPM, rel=1e-12)
+
+
+def test_d1_undamped_absorber_stills_the_input(trucks: Trucks) -> None:
+    at = np.array([tuning(trucks.tva)])
+    bare = replaced(trucks.tva, "tva_spring", damping=0.0)
+    assert at_input(bare, at)[0] < 1e-9 * at_input(without(trucks.tva, "tva", "tva_spring"), at)[0]
+
+
+def test_d1_modes_interlace(trucks: Trucks) -> None:
+    """Rayleigh: one more spring and mass pushes what lies below the tuning down and what lies above up."""
+    plain, own = order_speeds(without(trucks.tva, "tva", "tva_spring")), order_speeds(trucks.tva)
+    below = int((plain < tuning(trucks.tva)).sum())
+    assert (own[:below] < plain[:below]).all()
+    assert (own[below + 1 :] >= plain[below:] * (1 - 1e-12)).all()
+
+
+def test_d2_starts_at_the_tuning(trucks: Trucks) -> None:
+    tiny = sized(trucks.tva, 1e-7)
+    assert tuning(tiny) == pytest.approx(tuning(trucks.tva), rel=1e-12)
+    assert added(tiny) == pytest.approx(tuning(trucks.tva), rel=1e-6)
+
+
+def test_d2_heavy_flywheels_and_light_flange(trucks: Trucks) -> None:
+    """Near ω_t sqrt((k1 + k2)/(k1 + k2 + ka)) while the absorber is small."""
+    k = 52e3
+    for inertia in (0.05, 0.2):
+        ka = inertia * (3 * tuning(trucks.tva)) ** 2
+        expected = tuning(trucks.tva) * np.sqrt(k / (k + ka))
+        assert added(sized(trucks.tva, inertia)) == pytest.approx(expected, rel=0.015)
+
+
+def test_d2_open_clutch_separates_the_carriers(trucks: Trucks) -> None:
+    flange, secondary = (sized(trucks.tva, 0.2, carrier) for carrier in ("", "secondary"))
+    assert added(flange, flywheel_alone) < tuning(flange) < added(secondary, flywheel_alone)
+
+
+def test_d3_figures(outcomes: dict[str, Outcome]) -> None:
+    figures = outcomes["D3"].finding.figures
+    needed = np.asarray(figures["absorber inertia needed [kgm²]"])
+    apart = np.asarray(figures["separations of the tuning speed [%]"])
+    assert (np.diff(np.log(needed)) > np.diff(np.log(apart))).all()  # grows faster than the separation
+    assert needed[-1] > figures["dual mass flywheel without absorber [kgm²]"] == pytest.approx(2.3)
+
+
+def test_d4_figures(outcomes: dict[str, Outcome]) -> None:
+    figures = outcomes["D4"].finding.figures
+    notch = np.asarray(figures["amplitude at the tuning speed [rad/s²]"])
+    assert notch[1] / notch[0] == pytest.approx(2.0, rel=0.1)  # little damping: in proportion
+    assert notch[-1] < figures["without absorber at the tuning speed [rad/s²]"]
+
+
+@pytest.mark.parametrize("rpm", [600.0, 1234.5, 2000.0])
+def test_g1_rests_at_the_third_order(trucks: Trucks, rpm: float) -> None:
+    assert quiet_order(trucks.pendulum, rpm * RPM) == pytest.approx(3.0, rel=1e-6)
+
+
+def test_g1_another_order(trucks: Trucks) -> None:
+    name = only(trucks.pendulum, CentrifugalPendulum)
+    assert quiet_order(replaced(trucks.pendulum, name, order=2.5), 100.0) == pytest.approx(2.5, rel=1e-6)
+
+
+def test_g1_undamped_pendulum_stills_the_input(trucks: Trucks) -> None:
+    speed = np.array([600.0, 900.0, 1800.0]) * RPM
+    for model in (trucks.pendulum, on_single(trucks)):
+        name = only(model, CentrifugalPendulum)
+        still = at_input(replaced(model, name, damping=0.0), speed)
+        assert (still < 1e-9 * at_input(without(model, name), speed)).all()
