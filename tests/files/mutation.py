@@ -104,7 +104,8 @@ def number_changed(data: bytes, random: Random) -> bytes:
 
 
 def recoded(data: bytes, random: Random) -> bytes:
-    return data.decode("utf-8").encode(random.choice(("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "utf-7", "cp037")))
+    encoding = random.choice(("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "utf-7", "cp037"))
+    return data.decode("utf-8").encode(encoding, "replace")
 
 
 MUTATORS: tuple[Callable[[bytes, Random], bytes], ...] = (

@@ -40,9 +40,11 @@ def parsed_edit(text: str) -> tuple[str, Any]:
     ('clutch.stages', [{'up_to': '100 Nm', 'stiffness': 5000.0}])
     """
     path, equals, value = (part.strip() for part in text.partition("="))
-    if not equals or not path:
+    if not (equals and path and value):
         example = "absorber.stages.0.stiffness=10kNm/rad"
-        raise ModelError("a change is written path=value", found=quoted(text), remedy=f"e.g. {example}")
+        raise ModelError(
+            "a change is written path=value", found=quoted(text), remedy=f"e.g. {example}; null removes a key"
+        )
     if value[:1] in ("[", "{", "'", '"'):
         try:
             return path, parse_tree(f"value: {value}").data["value"]
@@ -70,6 +72,8 @@ def document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 def _put(document: dict[str, Any], path: str, value: Any) -> None:
     """Set or remove one value; blocks on the way that the document leaves out are made."""
     *steps, last = path.split(".")
+    if not all([*steps, last]):
+        raise ModelError("a key path has no empty steps", found=quoted(path))
     holder: Any = document
     for number, step in enumerate(steps):
         if isinstance(holder, dict) and step not in holder:

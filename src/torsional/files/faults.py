@@ -66,7 +66,7 @@ def _one(detail: dict[str, Any], tree: Tree) -> ModelError:
 def _sentence(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
     kind, context = str(detail["type"]), detail.get("ctx", {})
     if kind == "union_tag_not_found":
-        where, allowed = tree.place(path), _listed(context.get("expected_tags", ""))
+        where, allowed = tree.place(path), ", ".join(_tags(path))
         return ModelError("the key 'type' is missing", where=where, allowed=allowed)
     if kind == "union_tag_invalid":
         known = _tags(path)
@@ -101,6 +101,8 @@ def _path(location: Sequence[int | str], data: Any) -> str:
     for step in location:
         if isinstance(data, dict) and step not in data and data.get("type") == step:
             continue
+        if step == "[key]":
+            break
         parts.append(str(step))
         try:
             data = data[step]

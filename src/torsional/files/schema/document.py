@@ -15,6 +15,7 @@ from torsional.files.schema.engine import EngineBlock
 from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Speed
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox, VehicleBlock
 from torsional.files.schema.parts import Part
+from torsional.files.schema.published import published
 
 VERSION = 1
 _TITLE = 200
@@ -102,4 +103,5 @@ class ModelFile(Block):
 def json_schema() -> dict[str, Any]:
     """The schema of model files as JSON Schema, draft 2020-12, for editors and other tools."""
     schema = ModelFile.model_json_schema(mode="validation")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "torsional model file", **schema}
+    named = {**schema, "title": "torsional model file"}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **published(named)}

@@ -18,7 +18,7 @@ from torsional.stamps import GROUND
 
 Shape = Literal["one", "one or list", "list", "list or names", "range"]
 _LONGEST_LIST = 2000
-_REFUSED = re.compile(r"[:=,;*?\[\]{}<>\"'`\\/|&\s]|^ground$")
+_REFUSED = re.compile(r"[:=,;*?\[\]{}<>\"'`\\/|&]|^\s|\s$|[^\S ]|^ground$")
 
 
 @dataclass(frozen=True)
@@ -108,9 +108,9 @@ Stiffnesses = Annotated[float | list[float], Quantity("stiffness", above=0, shap
 
 def plain_name(value: str) -> str:
     """A name without marks that key paths, tables or pages would read as their own."""
-    if not 0 < len(value) <= 64 or _REFUSED.search(value):
+    if not 0 < len(value) <= 64 or _REFUSED.search(value) or not value.isprintable():
         found = "'ground', the node that never moves" if value == GROUND else units.quoted(value)
-        allowed = "1 to 64 letters, digits and the marks _ - + . ( ) #"
+        allowed = "1 to 64 letters, digits and marks, but none of : = , ; * ? [ ] { } < > / | & nor quotes"
         raise ModelError("this cannot be a name", found=found, allowed=allowed)
     return value
 
@@ -163,6 +163,6 @@ def fitting(values: float | Sequence[float], count: int, where: str, per: str) -
     if isinstance(values, (int, float)):
         return float(values)
     if len(values) != count:
-        allowed = f"one value, or {count}: one {per}"
+        allowed = f"one value, or {count}, one a {per}"
         raise ModelError("the list has the wrong length", where=where, found=f"{len(values)} values", allowed=allowed)
     return list(values)
