@@ -31,12 +31,14 @@ def acceleration(angle: xr.DataArray) -> xr.DataArray:
     >>> acceleration(theta).values.real.tolist()
     [[-90.0]]
     """
-    return _as(-((angle.order * angle.speed) ** 2) * angle, "acceleration", amplitude="complex 0-peak")
+    found = -((angle.order * angle.speed) ** 2) * angle
+    return _as(found.transpose(*angle.dims), "acceleration", amplitude="complex 0-peak")
 
 
 def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
     """Speed fluctuation orders i nΩ θ_n [rad/s], complex 0-peak."""
-    return _as(1j * angle.order * angle.speed * angle, "angular_velocity", amplitude="complex 0-peak")
+    found = 1j * angle.order * angle.speed * angle
+    return _as(found.transpose(*angle.dims), "angular_velocity", amplitude="complex 0-peak")
 
 
 def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:

@@ -13,11 +13,8 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.null_space import Elimination, Loop, eliminate, null_vectors
+from torsional.numerics.null_space import CANCELLED, Elimination, Loop, eliminate, null_vectors, transformed
 from torsional.stamps import GROUND, Connection, Constraint, Mass, Stamp
-
-ZERO = 1e-12
-"""A sum of weights this small against its terms is a zero blurred by rounding."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +60,6 @@ def weight_rows(stamps: Iterable[Stamp], nodes: Sequence[str]) -> Array:
             if node != GROUND:
                 row[index[node]] += weight
     return rows
-
-
-def reduced_rows(rows: Array, transform: Array) -> Array:
-    """Rows on the coordinates; what cancels to rounding, a rigid rotation's sum among it, is exactly zero."""
-    reduced = rows @ transform
-    reduced[np.abs(reduced) <= ZERO * (np.abs(rows) @ np.abs(transform))] = 0.0
-    return reduced
 
 
 def _nodes(stamps: Sequence[Stamp]) -> tuple[str, ...]:
@@ -149,7 +139,7 @@ def _speed_ratio(
     """Mean speed of every node: the rigid rotation of each part, scaled to 1 at its first node that turns."""
     elastic = [stamp for stamp in stamps if isinstance(stamp, Connection) and not _damper(stamp)]
     for chosen in (elastic, [stamp for stamp in elastic if GROUND not in stamp.weights]):
-        rows = reduced_rows(weight_rows(chosen, nodes), solved.transform)
+        rows = transformed(weight_rows(chosen, nodes), solved.transform)
         modes = solved.transform @ null_vectors(rows) if rows.size else solved.transform
         speed = _rotation(modes)
         if speed.any():
@@ -168,10 +158,10 @@ def _rotation(modes: Array) -> Array:
     """The sum of the rigid rotations, each scaled to 1 at the first node it moves."""
     speed = np.zeros(len(modes))
     for mode in modes.T:
-        moved = np.flatnonzero(np.abs(mode) > ZERO * np.abs(mode).max())
+        moved = np.flatnonzero(np.abs(mode) > CANCELLED * np.abs(mode).max())
         if moved.size and not speed[moved].any():
             speed += mode / mode[moved[0]]
-    speed[np.abs(speed) <= ZERO * max(np.abs(speed).max(), 1.0)] = 0.0
+    speed[np.abs(speed) <= CANCELLED * max(np.abs(speed).max(), 1.0)] = 0.0
     return speed
 
 
@@ -189,7 +179,7 @@ def _turning(parts: Sequence[Sequence[str]], nodes: Sequence[str], speed: Array,
 def _inertial(stamps: Sequence[Stamp], nodes: Sequence[str], solved: Elimination, transform: Array) -> None:
     """Every direction of motion must have inertia."""
     masses = [stamp for stamp in stamps if isinstance(stamp, Mass)]
-    rows = reduced_rows(weight_rows(masses, nodes), transform)
+    rows = transformed(weight_rows(masses, nodes), transform)
     free = null_vectors(rows[[bool(mass.inertia or mass.switch) for mass in masses]])
     if free.shape[1]:
         node = nodes[solved.independent[int(np.argmax(np.abs(free[:, 0])))]]

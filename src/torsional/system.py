@@ -12,9 +12,10 @@ import numpy as np
 from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.numerics.arrays import Array
+from torsional.numerics.null_space import transformed
 from torsional.powertrain import Powertrain
 from torsional.stamps import Connection, Mass, SpeedSwitch
-from torsional.structure import reduced_rows, weight_rows
+from torsional.structure import weight_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +145,7 @@ def assemble(powertrain: Powertrain) -> System:
     ratio = dict(zip(structure.nodes, structure.speed_ratio, strict=True))
 
     def reduced(chosen: list[Mass] | list[Connection]) -> Array:
-        return _balanced(reduced_rows(weight_rows(chosen, structure.nodes), structure.transform))
+        return _balanced(transformed(weight_rows(chosen, structure.nodes), structure.transform))
 
     return System(
         structure.nodes,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.random_models import Network, random_network
 
@@ -152,8 +152,11 @@ def test_absorber_without_inertia_is_none_and_notch_is_exact(
     at = Excitation.unit("primary", [1.0], [between_modes(plain, share)])
     x, y = (harmonic_response(s, at).angle.sel(node=nodes).values for s in (flange(0.0, 5.0), plain))
     assert (np.abs(x - y) <= 1e-12 * np.abs(y)).all()
-    notch = Excitation.unit("primary", [1.0], [np.sqrt(ka / ja)])
-    angle = harmonic_response(flange(ja, 0.0), notch).angle.sel(node=nodes).values.ravel()
+    tuned, undamped_system = np.sqrt(ka / ja), flange(ja, 0.0)
+    modes = natural_frequencies(undamped_system)[1:]
+    assume(np.abs(modes / tuned - 1).min() > 1e-3)  # a mode at the notch has an infinite response beside the zero
+    notch = Excitation.unit("primary", [1.0], [tuned])
+    angle = harmonic_response(undamped_system, notch).angle.sel(node=nodes).values.ravel()
     assert np.abs(angle[1:]).max() <= 1e-10 * np.abs(angle[0])
 
 

@@ -46,7 +46,7 @@ def power_split_absorber(
         "secondary": Inertia(secondary_inertia),
         "planets": PlanetSpin("primary", "secondary", planet_ratio, planet_inertia),
         "output": Inertia(output_inertia),
-        "gear": Superposition("output", "primary", "secondary", gear_quotient),
+        "power_split": Superposition("output", "primary", "secondary", gear_quotient),
     }
     nodes = ("primary", "secondary", "output")
     return Absorber("power split absorber", components, "primary", "output", ("springs",), nodes)

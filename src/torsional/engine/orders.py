@@ -81,7 +81,7 @@ def picked(series: ComplexArray, orders: Sequence[float] | FloatArray) -> Comple
 
 
 def periodic_spline(knots: FloatArray, rows: FloatArray) -> CubicSpline:
-    """Cubic spline over one cycle through ``rows`` (series, samples), whose first sample closes the cycle at the last knot."""
+    """Cubic spline over one cycle through ``rows`` (series, samples), whose first sample also closes it."""
     from scipy.interpolate import CubicSpline  # imported where used: order analyses do without scipy
 
     return CubicSpline(knots, np.column_stack([rows, rows[:, 0]]), axis=1, bc_type="periodic")

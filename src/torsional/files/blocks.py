@@ -97,7 +97,7 @@ def _lumped(inertia: float, block: Crankshaft, flange: str) -> Parts:
 
 
 def _flange_shaft(block: Crankshaft, flange: str) -> Shaft:
-    return Shaft("crankshaft", flange, block.flange_stiffness or 0.0, block.flange_damping)
+    return Shaft(flange, "crankshaft", block.flange_stiffness or 0.0, block.flange_damping)
 
 
 def _crankshaft(block: Crankshaft, flange: str, count: int) -> Parts:
@@ -146,7 +146,7 @@ def _planetary(b: schema.PlanetaryDualMassFlywheel) -> Absorber:
 
 
 def _power_split(b: schema.PowerSplit) -> Absorber:
-    made = absorbers.power_split_absorber(
+    return absorbers.power_split_absorber(
         b.primary_inertia,
         b.secondary_inertia,
         b.planet_inertia,
@@ -155,10 +155,6 @@ def _power_split(b: schema.PowerSplit) -> Absorber:
         planet_ratio=b.planet_ratio,
         gear_quotient=b.gear_quotient,
         damping=b.damping,
-    )
-    renamed = {"gear": "power_split"}  # the gearbox has a "gear" too
-    return dataclasses.replace(
-        made, components={renamed.get(name, name): part for name, part in made.components.items()}
     )
 
 

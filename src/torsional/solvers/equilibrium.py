@@ -31,6 +31,12 @@ class OperatingPoint:
     stiffness: Array
     laws: tuple[Law | None, ...]
 
+    def at(self, case: int) -> OperatingPoint:
+        """One of several operating points, by its place among the mean torques."""
+        return dataclasses.replace(
+            self, torque=self.torque[case], angle=self.angle[case], stiffness=self.stiffness[case]
+        )
+
     def stage(self, name: str) -> str:
         """The active stage of one connection, of an operating point at a single torque, in words."""
         i = self._index(name)
@@ -91,7 +97,7 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
 def linearize(system: System, point: OperatingPoint) -> System:
     """The same system with each law replaced by its tangent at one operating point.
 
-    Raises ModelError for a point of several operating points (pick one: ``dataclasses.replace``) .
+    Raises ModelError for a point of several operating points (pick one with its ``at``).
     """
     if point.names != system.connections.names:
         raise ModelError("the operating point belongs to another system", found=", ".join(point.names[:8]))

@@ -77,7 +77,7 @@ def response(
     torque: ComplexArray,
     values: Mapping[str, ArrayLike] | None = None,
 ) -> tuple[ComplexArray, StatusArray]:
-    """Coordinates q (…, frequencies, coordinates) and a status for each case, by the compiled elimination.
+    """Coordinates q (frequencies, coordinates) and a status for each case, by the compiled elimination; designs first.
 
     ``omega`` and ``speed`` (frequencies,) [rad/s]; ``torque`` (frequencies, nodes), or with a leading axis of designs.
     ``values`` exchanges connection or mass values by name of the field (stiffness, damping, loss_factor,
@@ -133,7 +133,8 @@ def _solved(
         connection_weights=c.weights,
         mass_weights=m.weights,
     )
-    return q[..., 0, :], status
+    many = torque.ndim > 2 or any(np.ndim(value) > 1 for value in own.values())
+    return (q[..., 0, :], status) if many else (q[0, :, 0], status[0])
 
 
 def _loads(system: System, nodes: Sequence[str], torque: ComplexArray) -> tuple[tuple[int, ...], ComplexArray]:
