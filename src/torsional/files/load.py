@@ -37,7 +37,7 @@ def load_model(path: str | os.PathLike[str]) -> Model:
     ModelError, and no other error, says what is wrong: file, key path with line, what was found, what is allowed.
     """
     tree = read_tree(path)
-    return _model(Tree(_with_files(tree, path), tree.lines, tree.file))
+    return _model(_completed(tree, path))
 
 
 def model_from_document(
@@ -45,9 +45,7 @@ def model_from_document(
 ) -> Model:
     """The model that a parsed model file describes; ``folder`` is where the files it names lie."""
     tree = Tree(dict(document), {}, file)
-    if folder is not None:
-        tree = Tree(_with_files(tree, Path(folder) / "model.yaml"), {}, file)
-    return _model(tree)
+    return _model(tree if folder is None else _completed(tree, Path(folder) / "model.yaml"))
 
 
 def validated(tree: Tree) -> ModelFile:
@@ -182,6 +180,15 @@ def _refuse_loose_blocks(file: ModelFile) -> None:
     if not file.absorber and not file.components:
         problem = "the file describes no machine"
         raise ModelError(problem, remedy="give the blocks of a vehicle (absorber, clutch, gearbox …) or components")
+
+
+def _completed(tree: Tree, path: str | os.PathLike[str]) -> Tree:
+    """The tree with its files; what is wrong with the tree itself is told before what is wrong with a file."""
+    try:
+        return Tree(_with_files(tree, path), tree.lines, tree.file)
+    except ModelError:
+        validated(tree)
+        raise
 
 
 def _with_files(tree: Tree, path: str | os.PathLike[str]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from torsional.errors import ModelError
 from torsional.files.load import validated
 from torsional.files.reader import Tree
-from torsional.files.schema.fields import Quantity
+from torsional.files.schema.fields import Quantity, quantity_of
 from torsional.model import Model
 from torsional.units import plausible
 
@@ -31,8 +31,7 @@ def warnings_of(model: Model) -> list[str]:
 def _of_block(block: BaseModel, path: str) -> list[str]:
     told: list[str] = []
     for key, field in type(block).model_fields.items():
-        quantity = next((part for part in field.metadata if isinstance(part, Quantity)), None)
-        told += _of_value(getattr(block, key), f"{path}.{key}" if path else key, quantity)
+        told += _of_value(getattr(block, key), f"{path}.{key}" if path else key, quantity_of(field))
     return told
 
 

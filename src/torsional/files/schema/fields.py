@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic.fields import FieldInfo
@@ -151,9 +151,16 @@ class Block(BaseModel):
         return data
 
 
+def quantity_of(field: FieldInfo) -> Quantity | None:
+    """The quantity a field holds; of one that may be left out it stands inside the union with None."""
+    choices = [metadata for choice in get_args(field.annotation) for metadata in getattr(choice, "__metadata__", ())]
+    return next((part for part in [*field.metadata, *choices] if isinstance(part, Quantity)), None)
+
+
 def told(field: FieldInfo) -> str:
     """A field in words: its quantity and unit, and what its description adds."""
-    entry = next((units.QUANTITIES[part.name] for part in field.metadata if isinstance(part, Quantity)), None)
+    quantity = quantity_of(field)
+    entry = units.QUANTITIES[quantity.name] if quantity else None
     measured = f"{entry.long_name} [{entry.unit}]".replace(" [-]", "") if entry else ""
     return ", ".join(part for part in (measured, field.description or "") if part)
 
