@@ -14,6 +14,7 @@ from torsional.numerics.arrays import Array
 from torsional.plots import style
 
 MARKERS = "osD^vPX*<>"
+PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 
 Names = Mapping[str, Sequence[str]]
 
@@ -71,7 +72,7 @@ def _draw_order(axes: Axes, order: float, last: float, highest: float, dash: str
         fontsize=8,
         ha="right",
         va="bottom",
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+        bbox=PATCH,
     )
 
 
@@ -104,7 +105,8 @@ def _name_modes(axes: Axes, result: xr.Dataset, names: Names, highest: float) ->
     for mode in range(len(names.get(gear, ())) - 1, 0, -1):
         if at[mode] < 0.96 * highest and above - at[mode] > 0.045 * highest:
             place = (float(style.shown(result.speed)[-1]), float(at[mode]))
-            axes.annotate(style.plain(names[gear][mode]), place, fontsize=7.5, ha="right", va="bottom", color=style.INK)
+            name = style.plain(names[gear][mode])
+            axes.annotate(name, place, fontsize=7.5, ha="right", va="bottom", color=style.INK, bbox=PATCH)
             above = at[mode]
 
 

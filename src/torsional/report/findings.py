@@ -1,0 +1,31 @@
+"""What a reader would conclude, in sentences computed from the results."""
+
+from __future__ import annotations
+
+from torsional.report.analysis import Comparison, Variant
+from torsional.report.finding import Finding
+from torsional.report.levels import irregularities, largest, travel, unsolved
+from torsional.report.ratios import against
+from torsional.report.resonances import resonances
+from torsional.report.springs import springs_of
+
+__all__ = ["Finding", "findings"]
+
+
+def findings(comparison: Comparison) -> list[tuple[str, list[Finding]]]:
+    """Findings under a heading for each variant and each comparison."""
+    groups = [(variant.label, _about(variant)) for variant in comparison.variants]
+    for other in comparison.variants[1:]:
+        title = f"{comparison.first.label} against {other.label}"
+        groups.append((title, against(comparison, other)))
+    return [(title, found) for title, found in groups if found]
+
+
+def _about(variant: Variant) -> list[Finding]:
+    found = resonances(variant)
+    if variant.response is None:
+        return [*found, Finding("missing", f"No vibration under engine torque is told: {variant.missing}.")]
+    found += [largest(variant, variant.response), *irregularities(variant.response)]
+    for spring in springs_of(variant):
+        found += travel(variant, variant.response, spring)
+    return found + unsolved(variant.response)
