@@ -34,7 +34,9 @@ def plot_map(
     size = style.shown(values.transpose("torque", "speed"))
     low, high = limits or colour_limits(size)
     ticks = SERIES[(0.999 * low <= SERIES) & (1.001 * high >= SERIES)]
-    unit_label = style.label(str(values.attrs["quantity"]), str(values.attrs.get("amplitude", "")), "acceleration")
+    convention = str(values.attrs.get("amplitude", "")).removesuffix(" over the cycle")
+    quantity = str(values.attrs["quantity"])
+    unit_label = style.label(quantity, convention, "acceleration" if quantity == "acceleration" else "")
     _draw(drawn, values, size, LogNorm(low, high), style.AMOUNT, ticks, unit_label)
     _draw_contours(drawn, values, size, ticks, within, "white")
     _draw_limits(drawn, values, within, full_load, title)

@@ -18,8 +18,6 @@ from torsional.solvers.campbell import campbell, full_load
 from torsional.solvers.full_load import full_load_response
 from torsional.solvers.map import response_map
 
-FEWEST = 5
-
 Progress = Callable[[int, int], None]
 
 
@@ -139,14 +137,29 @@ def _grid(model: Model, speeds: int, torques: int) -> tuple[Array, Array]:
 
 
 def _fitting(model: Model, grid: tuple[Array, Array], speeds: int, torques: int) -> tuple[Array, Array]:
-    """The first model's grid cut to a model's own range, or a grid of its own where too little is left."""
+    """The first model's grid brought to a model's own range, or its own where the two have little in common."""
     if model.engine is None:
         return grid
     own = _grid(model, speeds, torques)
-    (low, high), top = usable_speeds(model), float(own[1][-1])
-    kept = grid[0][(grid[0] >= low * (1 - 1e-9)) & (grid[0] <= high * (1 + 1e-9))]
-    loads = grid[1][grid[1] <= top * (1 + 1e-9)]
-    return kept if kept.size >= FEWEST else own[0], loads if loads.size >= FEWEST else own[1]
+    return continued(grid[0], own[0]), continued(grid[1], own[1])
+
+
+def continued(first: Array, own: Array) -> Array:
+    """The points of ``first`` cut or continued by its step to the range of ``own``; ``own`` where they hardly overlap.
+
+    >>> continued(np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.5, 3.0, 5.5])).tolist()
+    [1.0, 2.0, 3.0, 4.0, 5.0]
+    """
+    if min(first.size, own.size) < 2:
+        return own
+    common = min(first[-1], own[-1]) - max(first[0], own[0])
+    if common < 0.5 * max(np.ptp(first), np.ptp(own)):
+        return own
+    step = first[1] - first[0]
+    count = np.arange(np.ceil((own[0] - first[0]) / step - 1e-6), np.floor((own[-1] - first[0]) / step + 1e-6) + 1)
+    known = (count >= 0) & (count < first.size)  # taken as they are, since results are joined by equal coordinates
+    taken = first[np.clip(count, 0, first.size - 1).astype(int)]
+    return np.asarray(np.where(known, taken, first[0] + step * count))
 
 
 def _variant(model: Model, label: str, grid: tuple[Array, Array]) -> Variant:

@@ -63,6 +63,7 @@ def gears_picture(variant: Variant, response: Response) -> Picture:
     return picture(figure, caption, "A line for each gear over speed.")
 
 
+@style.styled
 def cuts_picture(comparison: Comparison) -> Picture:
     """Orders of every variant, a panel a gear, all on one scale."""
     answered = comparison.answered
@@ -94,6 +95,7 @@ def _cut_orders(comparison: Comparison) -> list[float]:
     return [variant.main_order, *[n for n in ranked if n != variant.main_order][:2]]
 
 
+@style.styled
 def map_picture(comparison: Comparison, gear: str) -> Picture:
     """Maps of all variants that have a gear, and the ratio of the first to each other."""
     held = [(v, r) for v, r in comparison.answered if gear in r.map.gear.values]

@@ -6,7 +6,7 @@ from torsional.report import pictures, response_pictures, tables
 from torsional.report.analysis import Comparison, Variant
 from torsional.report.blocks import Block, Heading, Items, Picture, Section, Text
 from torsional.report.findings import findings
-from torsional.report.labels import told
+from torsional.report.labels import listed, told
 from torsional.report.springs import springs_of
 
 
@@ -35,7 +35,7 @@ def machine(comparison: Comparison, variant: Variant, number: int) -> Section:
         tables.connection_table(variant, gear),
         *[tables.mode_table(variant, each, folded=each != gear) for each in chosen],
         pictures.shape_picture(variant, gear),
-        pictures.shares_picture(variant, gear),
+        *[pictures.shares_picture(variant, each) for each in chosen],
     ]
     title = variant.label[:1].upper() + variant.label[1:]
     return Section(f"machine-{number + 1}", title, tuple(blocks))
@@ -57,15 +57,19 @@ def interference(comparison: Comparison) -> Section:
 
 def excitation(comparison: Comparison) -> Section:
     """What the engine does; told once where all variants have the same engine."""
-    blocks: list[Block] = []
-    seen: list[object] = []
+    groups: list[list[Variant]] = []
     for variant, _ in comparison.answered:
-        known = (variant.model.engine, variant.model.operation)
-        if known not in seen:
-            seen.append(known)
-            blocks += [Heading(variant.label)] if len(comparison.answered) > 1 else []
-            blocks += response_pictures.engine_pictures(variant)
+        alike = [g for g in groups if _engine(g[0]) == _engine(variant)]
+        alike[0].append(variant) if alike else groups.append([variant])
+    blocks: list[Block] = []
+    for group in groups:
+        blocks += [Heading(listed([variant.label for variant in group]))] if len(groups) > 1 else []
+        blocks += response_pictures.engine_pictures(group[0])
     return Section("excitation", "Excitation by the engine", tuple(blocks))
+
+
+def _engine(variant: Variant) -> object:
+    return variant.model.engine, variant.model.operation
 
 
 def cuts(comparison: Comparison) -> Section:
