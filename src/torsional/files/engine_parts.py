@@ -28,6 +28,7 @@ from torsional.files.schema.engine import (
 )
 from torsional.files.schema.fields import Block
 from torsional.files.tables import parse_table
+from torsional.units import quoted
 
 _RENAMED = {"heat_spread": "cylinder_spread", "load table": "mean_effective_pressure", "pressure": "pressure_trace"}
 
@@ -114,9 +115,21 @@ def _load_table(block: TableOverLoad, path: str) -> LoadTable | float:
         return LoadTable(tuple(zip(loads, values, strict=True))) if len(values) > 1 else values[0]
 
 
+@contextmanager
+def _in_file(file: str | None, path: str) -> Iterator[None]:
+    """Errors in a table name its file and the place there, beside the key that refers to it."""
+    try:
+        yield
+    except ModelError as error:
+        place = error.where.removeprefix("pressure text").lstrip(", ")
+        problem = ": ".join(part for part in (f"in {quoted(file or 'text')}", place, error.problem) if part)
+        told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
+        raise ModelError(problem, where=path, **told) from None
+
+
 def _trace(block: PressureTraceBlock) -> PressureTrace:
     text = embedded_text(block.file, block.text, "engine.pressure_trace")
-    with within("engine.pressure_trace"):
+    with _in_file(block.file, "engine.pressure_trace"):
         return PressureTrace.from_csv(text + "\n", speed=block.speed, offset=block.offset, own_angle=block.own_angle)
 
 
@@ -125,7 +138,7 @@ def _full_load(block: FullLoadBlock) -> FullLoad:
         columns = {"speed": block.speed, "torque": block.torque}
     else:
         text = embedded_text(block.file, block.text, "engine.full_load")
-        with within("engine.full_load"):
+        with _in_file(block.file, "engine.full_load"):
             columns = parse_table(text, {"speed": "speed", "torque": "torque"}, increasing="speed")
     with within("engine.full_load"):
         return FullLoad(tuple(columns["speed"]), tuple(columns["torque"]))

@@ -22,6 +22,14 @@ _WANTED = {
     "bool_type": "true or false is wanted",
     "float_type": "a number is wanted",
 }
+_BOUNDS = {
+    "greater_than_equal": ("is too small", ">=", "ge"),
+    "less_than_equal": ("is too large", "<=", "le"),
+    "string_too_short": ("the text is too short", "characters >=", "min_length"),
+    "string_too_long": ("the text is too long", "characters <=", "max_length"),
+    "too_short": ("there are too few", "number >=", "min_length"),
+    "too_long": ("there are too many", "number <=", "max_length"),
+}
 
 
 class SchemaError(ModelError):
@@ -79,6 +87,9 @@ def _sentence(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
         return ModelError(
             "is none of the choices", where=tree.place(path), found=found, allowed=_listed(context["expected"])
         )
+    if kind in _BOUNDS:
+        problem, sign, key = _BOUNDS[kind]
+        return ModelError(problem, where=tree.place(path), found=found, allowed=f"{sign} {context[key]}")
     problem = _WANTED.get(kind, str(detail["msg"])[:1].lower() + str(detail["msg"])[1:])
     return ModelError(problem, where=tree.place(path), found=found)
 
@@ -98,8 +109,10 @@ def _tags(path: str) -> list[str]:
 def _path(location: Sequence[int | str], data: Any) -> str:
     """The key path of a finding: the location without the type names that choose among blocks."""
     parts: list[str] = []
+    chosen = False
     for step in location:
-        if isinstance(data, dict) and step not in data and data.get("type") == step:
+        if not chosen and _chooses(parts) and isinstance(data, dict) and data.get("type") == step:
+            chosen = True
             continue
         if step == "[key]":
             break
@@ -109,3 +122,8 @@ def _path(location: Sequence[int | str], data: Any) -> str:
         except (KeyError, IndexError, TypeError):
             data = None
     return ".".join(parts)
+
+
+def _chooses(parts: Sequence[str]) -> bool:
+    """Whether the block at this path is one of several that its type tells apart."""
+    return parts == ["absorber"] or (len(parts) in (2, 4) and parts[-2] == "components")

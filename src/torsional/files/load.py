@@ -132,8 +132,9 @@ def _traced(error: ModelError, built: Machine) -> ModelError:
     part = error.where.partition(".")[0]
     path = built.origin.get(part, "")
     where = path if path.endswith(part) else ".".join(filter(None, (path, error.where)))
-    told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
-    return ModelError(error.problem, where=where or error.where, **told)
+    remedy = "connect them by a shaft, a coupling or gears" if "parts=" in error.remedy else error.remedy
+    told = {"found": error.found, "allowed": error.allowed, "remedy": remedy}
+    return ModelError(error.problem, where=where or error.where or "components", **told)
 
 
 def _check_landmarks(model: Model, powertrain: Powertrain) -> None:

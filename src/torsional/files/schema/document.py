@@ -82,8 +82,8 @@ class GearBlock(Block):
 class ModelFile(Block):
     """A model file: a vehicle by its blocks, any machine by its components, or both."""
 
-    torsional: Annotated[Literal[1], BeforeValidator(_version)] = Field(description="version of this schema")
-    name: Annotated[str, Field(min_length=1, max_length=_TITLE)]
+    torsional: Annotated[Literal[1], BeforeValidator(_version)] = Field(description="version of this schema: 1")
+    name: Annotated[str, Field(min_length=1, max_length=_TITLE)] = Field(description="what it is, in words")
     description: Annotated[str, Field(max_length=4000)] = ""
     engine: EngineBlock | None = None
     crankshaft: Crankshaft | None = None
