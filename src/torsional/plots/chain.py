@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +17,8 @@ from torsional.units import show
 
 THICKNESS = 0.3
 TALLEST = 1.15
+SLANTED = {"rotation": 50, "fontsize": 7.5, "linespacing": 1.0, "zorder": 4}
+PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.3}
 
 
 @style.styled
@@ -35,13 +38,14 @@ def plot_chain(
     line = chain(powertrain)
     xs, ys = (np.array([place[i] for place in line.places.values()]) for i in (0, 1))
     width = float(np.ptp(xs)) + 2.0
-    figure, drawn = style.on(axes, (max(6.0, 0.66 * width), 3.0 + 0.8 * float(np.ptp(ys))))
+    figure, drawn = style.on(axes, (max(6.0, 0.66 * width), 3.0 + 0.52 * max(float(np.ptp(ys)) - 2.2, 0.0)))
+    beside: dict[float, float] = {}
     for link in line.links:
         colour = style.COLOURS[1] if link.name in absorber else style.COLOURS[2] if link.name == clutch else style.INK
-        _draw_link(drawn, line, link, colour)
+        _draw_link(drawn, line, link, colour, beside)
     _draw_discs(drawn, line, throws)
     drawn.set_xlim(xs.min() - 0.8, xs.max() + 0.8)
-    drawn.set_ylim(ys.min() - 2.9, ys.max() + 2.9)
+    drawn.set_ylim(ys.min() - 2.9, max(ys.max() + 0.7, 2.9))
     drawn.set_axis_off()
     return figure
 
@@ -55,24 +59,38 @@ def _draw_discs(axes: Axes, line: Chain, throws: Sequence[str]) -> None:
         corner = (x - THICKNESS / 2, y - half)
         axes.add_patch(Rectangle(corner, THICKNESS, 2 * half, facecolor=colour, edgecolor=style.INK, zorder=3))
         text = style.readable(node) + (f"\n{show(inertia, 'inertia')}" if inertia else "")
-        axes.text(x + 0.12, y - TALLEST - 0.05, text, rotation=50, fontsize=7.5, ha="right", va="top", linespacing=1.0)
+        if y <= 0:
+            axes.text(x + 0.12, y - TALLEST - 0.05, text, ha="right", va="top", **SLANTED)  # type: ignore[arg-type]
+        else:
+            axes.text(x + 0.3, y, text, ha="left", va="center", fontsize=7.5, linespacing=1.0)
 
 
-def _draw_link(axes: Axes, line: Chain, link: Link, colour: str) -> None:
-    """One link between its nodes; springs carry their name and stiffness."""
-    for first, second in zip(link.nodes, link.nodes[1:], strict=False):
+def _draw_link(axes: Axes, line: Chain, link: Link, colour: str, beside: dict[float, float]) -> None:
+    """One link between its nodes; springs and gears carry their name, above the line or beside an upright one."""
+    for first, second in pairwise(link.nodes):
         (x1, y1), (x2, y2) = line.places[first], line.places[second]
-        x, y = _zigzag(x1, y1, x2, y2) if link.kind == "spring" else (np.array([x1, x2]), np.array([y1, y2]))
+        aside = 0.14 if x1 == x2 and link.kind != "spring" else 0.0  # a gear beside the spring of the same two nodes
+        x, y = _zigzag(x1, y1, x2, y2) if link.kind == "spring" else (np.array([x1, x2]) - aside, np.array([y1, y2]))
         look = {"spring": "-", "gear": (0, (1, 1)), "damper": (0, (4, 2)), "planets": "-."}[link.kind]
-        thick = {"spring": 1.2, "gear": 3.0}.get(link.kind, 1.2)
+        thick = {"gear": 3.0}.get(link.kind, 1.2)
         axes.plot(x, y, color=colour, linestyle=look, linewidth=thick, zorder=2, gid=f"link-{link.kind}")
     if link.kind in ("spring", "gear"):
-        (x1, y1), (x2, y2) = line.places[link.nodes[0]], line.places[link.nodes[1]]
         detail = link.described if link.kind == "spring" else _speeds(line, link)
         text = style.readable(link.name) + (f"\n{detail}" if detail else "")
-        place = (0.5 * (x1 + x2) - 0.1, 0.5 * (y1 + y2) + TALLEST + 0.05)
-        style_ = {"rotation": 50, "fontsize": 7.5, "ha": "left", "va": "bottom", "linespacing": 1.0}
-        axes.text(*place, text, color=colour, **style_)  # type: ignore[arg-type]
+        _name_link(axes, line, link, text, colour, beside)
+
+
+def _name_link(axes: Axes, line: Chain, link: Link, text: str, colour: str, beside: dict[float, float]) -> None:
+    """The name above a level link; those of a branch stand beside it, one under the other, clear of the names below."""
+    spots = [line.places[node] for node in link.nodes]
+    (x1, y1), (x2, _) = spots[0], spots[-1]
+    if all(y == y1 for _, y in spots):
+        place = (0.5 * (x1 + x2) - 0.1, y1 + TALLEST + 0.05)
+        axes.text(*place, text, color=colour, ha="left", va="bottom", bbox=PATCH, **SLANTED)  # type: ignore[arg-type]
+        return
+    x, y = max(spots, key=lambda spot: spot[1])
+    beside[x] = beside.get(x, y - 0.2) - 0.55
+    axes.text(x + 0.35, beside[x], text, color=colour, ha="left", va="center", fontsize=7.5, linespacing=1.0)
 
 
 def _speeds(line: Chain, link: Link) -> str:

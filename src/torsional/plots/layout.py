@@ -75,7 +75,7 @@ def chain(powertrain: Powertrain) -> Chain:
             own[node] += stamp.inertia * weight**2 * (ratio[node] or 1.0) ** 2
     places: dict[str, tuple[float, float]] = {}
     for part in powertrain.structure.parts:
-        below = min((y for _, y in places.values()), default=4.0) - 4.0
+        below = min((y for _, y in places.values()), default=6.0) - 6.0
         places |= {node: (x, y + below) for node, (x, y) in _placed(part, links).items()}
     return Chain(places, links, own, ratio)
 
@@ -117,7 +117,7 @@ def _free(places: Mapping[str, tuple[float, float]], parent: str) -> tuple[float
     x, y = places[parent]
     taken = set(places.values())
     tries = [(x + 1.0, y)] if y > 0 else []
-    tries += [(x + shift, y + 3.2 * (level + 1)) for level in range(8) for shift in (0.0, 1.0, -1.0)]
+    tries += [(x + shift, y + 4.6 * (level + 1)) for level in range(8) for shift in (0.0, 1.0, -1.0)]
     return next((place for place in tries if place not in taken), (x, y + 20.0 + len(taken)))
 
 
