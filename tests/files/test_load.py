@@ -308,11 +308,28 @@ class TestWarnings:
         assert len(told) == bool(sentence)
         assert sentence in "".join(told)
 
+    def test_speeds_and_torques_against_the_full_load_curve(self) -> None:
+        assert warnings_of(truck(operation={"speed": "600:2200 rpm"})) == [
+            "operation.speed: 600 rpm to 2200 rpm goes beyond the full-load curve (600 rpm to 2000 rpm)"
+        ]
+        assert warnings_of(truck(absorber={"stop_torque": 2400})) == [
+            "absorber: the springs meet their stop at 2400 Nm, and full load is 2500 Nm"
+        ]
+
     def test_a_model_from_no_file_has_none(self) -> None:
         assert warnings_of(truck().replaced(document={})) == []
 
 
 class TestErrors:
+    def test_a_giant_is_refused(self) -> None:
+        discs = {name: {"type": "inertia", "inertia": 1} for name in "abc"}
+        tube = {"type": "distributed_shaft", "length": 1, "outer_diameter": 0.1, "elements": 250}
+        shafts = {"s": {**tube, "a": "a", "b": "b"}, "t": {**tube, "a": "b", "b": "c"}}
+        with pytest.raises(
+            ModelError, match="components: the machine has too many parts; found 503; allowed: at most 400"
+        ):
+            model_from_document({"torsional": 1, "name": "g", "components": {**discs, **shafts}})
+
     def test_several_findings_come_together(self, tmp_path: Path) -> None:
         text = (EXAMPLES / "truck_smf.yaml").read_text(encoding="utf-8")
         bad = text.replace("inertia: 1.9 kgm²", "inertia: 1.9 kg").replace("damping: 30 ", "damping: -30 ")

@@ -19,10 +19,12 @@ from torsional.files.opening import TABLE_BYTES, read_text
 from torsional.files.reader import Tree, read_tree, resolve_reference
 from torsional.files.schema import ModelFile
 from torsional.files.schema.document import LandmarksBlock, OperationBlock
+from torsional.files.schema.parts import DistributedShaftPart
 from torsional.model import Landmarks, Model, Operation
 from torsional.powertrain import Powertrain
 from torsional.units import quoted
 
+PARTS = 400
 _NEEDS = {
     "crankshaft": ("absorber", "to turn"),
     "clutch": ("absorber", "to sit on"),
@@ -176,11 +178,29 @@ def _refuse_loose_blocks(file: ModelFile) -> None:
         )
     if file.driveline and not file.vehicle:
         raise ModelError("a driveline needs a block 'vehicle' to move", where="driveline")
+    _refuse_giants(file)
     if file.gearbox and file.gears:
         raise ModelError("gears and gearbox exclude each other", where="gears", remedy="remove one of the two")
     if not file.absorber and not file.components:
         problem = "the file describes no machine"
         raise ModelError(problem, remedy="give the blocks of a vehicle (absorber, clutch, gearbox …) or components")
+
+
+def _refuse_giants(file: ModelFile) -> None:
+    """Checking a machine takes time with the square of its parts: one file must not take a face's minute."""
+    largest = max(([*gear.components.values()] for gear in file.gears.values()), key=len, default=[])
+    count = sum(
+        part.elements if isinstance(part, DistributedShaftPart) else 1 for part in (*file.components.values(), *largest)
+    )
+    if count > PARTS:
+        remedy = "give distributed shafts fewer elements"
+        raise ModelError(
+            "the machine has too many parts",
+            where="components",
+            found=str(count),
+            allowed=f"at most {PARTS}",
+            remedy=remedy,
+        )
 
 
 def _completed(tree: Tree, path: str | os.PathLike[str]) -> Tree:

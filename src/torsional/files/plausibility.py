@@ -9,9 +9,12 @@ from pydantic import BaseModel
 from torsional.errors import ModelError
 from torsional.files.load import validated
 from torsional.files.reader import Tree
+from torsional.files.schema import ModelFile
+from torsional.files.schema.absorber import PowerSplit
 from torsional.files.schema.fields import Quantity, quantity_of
+from torsional.files.schema.springs import Spring
 from torsional.model import Model
-from torsional.units import plausible
+from torsional.units import plausible, show
 
 
 def warnings_of(model: Model) -> list[str]:
@@ -25,7 +28,32 @@ def warnings_of(model: Model) -> list[str]:
         file = validated(Tree(dict(model.document)))
     except ModelError:
         return []
-    return _of_block(file, "")
+    return _of_block(file, "") + _beyond_the_curve(model) + _below_full_load(file, model)
+
+
+def _beyond_the_curve(model: Model) -> list[str]:
+    """Speeds of the analyses that the full-load curve does not reach."""
+    curve = model.engine.full_load if model.engine else None
+    low, high = model.operation.speed
+    if curve is None or model.operation.torque is not None:
+        return []
+    first, last = curve.speeds[0], curve.speeds[-1]
+    if first * (1 - 1e-9) <= low and high <= last * (1 + 1e-9):
+        return []
+    reach = f"{show(first, 'speed')} to {show(last, 'speed')}"
+    return [f"operation.speed: {show(low, 'speed')} to {show(high, 'speed')} goes beyond the full-load curve ({reach})"]
+
+
+def _below_full_load(file: ModelFile, model: Model) -> list[str]:
+    """A stop that full load reaches: steady running on the stop is no one's intention."""
+    if not isinstance(file.absorber, Spring) or model.engine is None or model.engine.full_load is None:
+        return []
+    stop = file.absorber.stages[-1].up_to if file.absorber.stages else file.absorber.stop_torque
+    share = file.absorber.gear_quotient if isinstance(file.absorber, PowerSplit) else 1.0
+    if file.absorber.stop_stiffness is None or stop is None or stop > share * model.full_load_peak():
+        return []
+    peak = show(model.full_load_peak(), "torque")
+    return [f"absorber: the springs meet their stop at {show(stop, 'torque')}, and full load is {peak}"]
 
 
 def _of_block(block: BaseModel, path: str) -> list[str]:

@@ -21,7 +21,7 @@ VERSION = 1
 _TITLE = 200
 Range = tuple[float, ...]
 SpeedRange = Annotated[Range, Quantity("speed", above=0, shape="range")]
-Parts = Annotated[dict[Name, Part], Field(max_length=500)]
+Parts = Annotated[dict[Name, Part], Field(max_length=400)]
 
 
 def _version(value: object) -> object:

@@ -162,7 +162,7 @@ class DistributedShaftPart(Between):
     length: Length
     outer_diameter: Length
     inner_diameter: Annotated[float, Quantity("length", least=0)] = 0.0
-    elements: Annotated[int, Field(ge=1, le=500)] = 10
+    elements: Annotated[int, Field(ge=1, le=300)] = 10
     shear_modulus: Annotated[float, Quantity("shear_modulus", above=0)] = 80e9
     density: Annotated[float, Quantity("density", above=0)] = 7850.0
     loss_factor: LossFactor = 0.0
