@@ -23,6 +23,7 @@ help:  ## list the targets
 
 demo: $(VENV)/.installed-run  ## install, then compare the shipped truck's dual mass flywheel with its single mass one
 	$(BIN)/torsional report examples/truck_dmf.yaml --compare examples/truck_smf.yaml
+	@echo "Open it in a browser: $(CURDIR)/report.html"
 
 test: $(VENV)/.installed-test  ## install what the tests need and run them all
 	$(BIN)/python -m pytest -n $(JOBS)
