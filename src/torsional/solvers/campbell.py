@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from torsional.errors import ModelError
 from torsional.model import Model
@@ -152,6 +151,7 @@ def _crossings(system: System, speeds: Array, frequency: Array, orders: Array) -
 
 def _met(system: System, speeds: Array, omega: Array, mode: int, order: float) -> float:
     """The lowest speed at which an order meets a mode whose frequency depends on speed."""
+    from scipy.optimize import brentq  # imported where used: most analyses do without
 
     def gap(speed: float) -> float:
         return float(natural_frequencies(system, speed)[mode]) - order * speed
