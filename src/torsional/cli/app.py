@@ -14,6 +14,7 @@ from torsional import __version__
 from torsional.cli import options as o
 
 Job = Callable[[], None]
+HELP = ["--help", "-h"]
 RESULTS = (".nc", ".csv", ".json", ".png", ".svg")
 
 app = typer.Typer(
@@ -21,6 +22,7 @@ app = typer.Typer(
     help="Torsional vibrations of vehicle powertrains and the absorbers that tame them.",
     epilog="A first model: torsional new truck -o my.yaml, then torsional check my.yaml.",
     rich_markup_mode=None,
+    context_settings={"help_option_names": HELP},
     pretty_exceptions_enable=False,
 )
 

@@ -10,7 +10,9 @@ from torsional import __version__
 from torsional.cli.answers import print_json
 from torsional.cli.documents import json_text
 from torsional.cli.outputs import checked, written
+from torsional.cli.progress import progress
 from torsional.cli.request import files_of, opened
+from torsional.report import write_report
 
 
 def run(
@@ -25,9 +27,8 @@ def run(
         (".html",),
         [f for path, each in zip(paths, models, strict=True) for f in files_of(path, each.document)],
     )
-    from torsional.report import write_report
-
-    written({output: lambda draft: write_report(models, draft)})
+    with progress("analyses and pictures", quiet or as_json) as moved:
+        written({output: lambda draft: write_report(models, draft, progress=moved)})
     if as_json:
         told = [
             {"name": each.name, "file": str(path), "hash": each.hash} for path, each in zip(paths, models, strict=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -91,9 +90,8 @@ def _parts(model: Model, system: System, speeds: Array, torques: Array, orders: 
     _, group = np.unique(state.stiffness, axis=0, return_inverse=True)
     for number in range(int(group.max()) + 1):
         at = np.flatnonzero(group.ravel() == number)
-        point = {key: getattr(state, key)[at[0]] for key in ("torque", "angle", "stiffness")}
         excitation = engine.excitation(throws, speeds[at], torques[at], orders)
-        yield harmonic_response(linearize(system, dataclasses.replace(state, **point)), excitation)
+        yield harmonic_response(linearize(system, state.at(int(at[0]))), excitation)
 
 
 def tables(data: xr.Dataset, title: str) -> list[Table]:

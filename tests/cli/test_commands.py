@@ -1,0 +1,266 @@
+"""Every command on the shipped models: what it tells people, scripts and files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from torsional.files import load_model
+from torsional.files.starter import KINDS
+from torsional.quantities import SAMPLES
+from torsional.results import load_results
+from torsional.system import assemble
+
+ROOT = Path(__file__).parents[2]
+Run = Callable[..., Any]
+
+ANALYSES = {
+    "modes": ["--gear", "11,12"],
+    "respond": ["--speed", "600:1000:100rpm", "--order", "3", "--order", "1.5"],
+    "map": ["--speed", "600:1000:200rpm", "--torque", "500:1500:500 Nm", "--orders", "0.5:3"],
+    "campbell": ["--gear", "all"],
+}
+CASES = [pytest.param(name, more, id=name) for name, more in ANALYSES.items()]
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        (["check"], ["dual mass flywheel", "to the stop [deg]", "First elastic modes", "full load peak"]),
+        (["modes"], ["frequency [Hz]", "absorber mode", "clutch mode", "order 3 meets it at [rpm]", "dmf 63 %"]),
+        (["respond"], ["half peak-to-peak", "sum as a bound", "gearbox_input", "clutch", "peak [rad/s²]", "full load"]),
+        (["map", "--worst", "1"], ["cells within full load", "gearbox_input", "bound [Nm]", "1 gears × 26 torques"]),
+        (["campbell", "--order", "3"], ["Speeds at which orders meet modes in gear 12", "order 3 at [rpm]"]),
+    ],
+    ids=lambda value: value[0],
+)
+def test_tables_for_people(torsional: Run, truck: str, command: list[str], expected: list[str]) -> None:
+    told = torsional(command[0], truck, *command[1:])
+    assert (told.code, told.err) == (0, "")
+    assert [text for text in expected if text not in told.out] == []
+    assert "\x1b" not in told.out
+
+
+@pytest.mark.parametrize("command", ["check", *ANALYSES])
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.yaml")), ids=lambda path: path.stem)
+def test_shipped_models_are_answered_or_refused_in_one_sentence(torsional: Run, path: Path, command: str) -> None:
+    more = {"respond": ["--order", "3"], "map": ["--order", "3"]}.get(command, [])
+    told = torsional(command, path, "--quiet", *more)
+    excited = load_model(path).engine is not None
+    runs = excited or command not in ("respond", "map")
+    assert told.code == 0 if runs else told.code == 2
+    assert told.out == ""
+    assert told.err.count("\n") == (0 if runs else 1)
+
+
+def units_of(document: Any) -> Iterator[bool]:
+    """For every value of a JSON document that has a quantity or is an amount: whether it names its unit."""
+    if isinstance(document, dict):
+        if "quantity" in document or "value" in document:
+            yield bool(document.get("units"))
+        for value in document.values():
+            yield from units_of(value)
+    elif isinstance(document, list):
+        for value in document:
+            yield from units_of(value)
+
+
+@pytest.mark.parametrize(("command", "more"), [pytest.param("check", [], id="check"), *CASES])
+def test_json_is_one_strict_document_with_units(torsional: Run, truck: str, command: str, more: list[str]) -> None:
+    told = torsional(command, truck, "--json", *more)
+    assert (told.code, told.err) == (0, "")
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is not JSON")
+
+    document = json.loads(told.out, parse_constant=refuse)
+    assert document["command"] == command
+    assert document["model"]["hash"] == load_model(truck).hash
+    named = list(units_of(document))
+    assert len(named) > 5
+    assert all(named)
+
+
+@pytest.mark.parametrize(("command", "more"), CASES)
+def test_files_of_every_kind(torsional: Run, truck: str, command: str, more: list[str]) -> None:
+    outputs = [f"out{suffix}" for suffix in (".nc", ".csv", ".json", ".png", ".svg")]
+    told = torsional(command, truck, "--json", *more, *(part for name in outputs for part in ("-o", name)))
+    assert told.code == 0
+    assert sorted(path.name for path in Path().iterdir()) == sorted(outputs)
+    assert Path("out.png").read_bytes().startswith(b"\x89PNG")
+    assert Path("out.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert Path("out.json").read_text(encoding="utf-8") == told.out
+    saved = load_results("out.nc")
+    for name, variable in json.loads(told.out)["result"]["variables"].items():
+        same_variable(saved[name], variable)
+
+
+def same_variable(saved: Any, told: dict[str, Any]) -> None:
+    assert list(saved.dims) == told["dimensions"]
+    if saved.dtype.kind == "c":
+        np.testing.assert_array_equal(saved.values.real, told["real"])
+        np.testing.assert_array_equal(saved.values.imag, told["imaginary"])
+    else:
+        values = np.array(told["values"])
+        np.testing.assert_array_equal(saved.values, values if saved.dtype.kind in "OUT" else values.astype(saved.dtype))
+
+
+def test_quiet_prints_nothing(torsional: Run, truck: str) -> None:
+    told = torsional("modes", truck, "--quiet", "-o", "out.csv")
+    assert (told.code, told.out, told.err) == (0, "", "")
+    assert Path("out.csv").exists()
+
+
+def test_a_change_is_made_and_told(torsional: Run, truck: str) -> None:
+    stiff = torsional("modes", truck, "--set", "absorber.stiffness=52kNm/rad", "--json")
+    changed, plain = json.loads(stiff.out), json.loads(torsional("modes", truck, "--json").out)
+    assert changed["model"]["changes"] == ["absorber.stiffness=52kNm/rad"]
+    assert changed["model"]["hash"] != plain["model"]["hash"]
+    frequencies = [np.ravel(each["result"]["variables"]["frequency"]["values"]) for each in (plain, changed)]
+    assert np.all(frequencies[1][1:] >= frequencies[0][1:])
+    assert frequencies[1][3] > 1.05 * frequencies[0][3]
+
+
+def test_respond_shows_the_swing_below_its_bound(torsional: Run, truck: str) -> None:
+    told = json.loads(torsional("respond", truck, "--json", "--node", "all").out)["result"]["variables"]
+    swing, bound = (np.array(told[f"acceleration_{kind}"]["values"]) for kind in ("swing", "bound"))
+    assert swing.shape == (141, 18)
+    assert np.all(swing <= bound * (1 + 1e-12))
+    assert np.all(swing > 0.2 * bound)
+    assert not any(name.startswith("torque_") for name in told)
+
+
+def test_irregularity_counts_a_nodes_own_mean_speed(torsional: Run, truck: str) -> None:
+    arguments = [
+        "respond",
+        truck,
+        "--json",
+        "--gear",
+        "1",
+        "--speed",
+        "1000rpm",
+        "--node",
+        "gearbox_output",
+        "--order",
+        "3",
+    ]
+    told = json.loads(torsional(*arguments).out)["result"]["variables"]
+    angle = complex(told["angle"]["real"][0][0][0], told["angle"]["imaginary"][0][0][0])
+    # one order alone swings by twice its amplitude n Ω |θ|, over the output's own speed Ω / 14.94
+    expected = 2 * 3 * abs(angle) * 14.94
+    sampled = 1 - np.cos(3 * 2 * np.pi / SAMPLES)  # the highest sample lies at most half a step beside the peak
+    assert (1 - sampled) * expected <= told["irregularity"]["values"][0][0] <= expected * (1 + 1e-12)
+
+
+def test_map_lists_the_worst_cells_within_full_load_alone(torsional: Run, truck: str) -> None:
+    told = torsional("map", truck, "--worst", "1", "--json", "--order", "3")
+    result = json.loads(told.out)["result"]["variables"]
+    within = np.array(result["within_full_load"]["values"])
+    swing = np.array(result["acceleration_swing"]["values"])[0, :, :, 1]
+    assert not within.all()
+    worst = np.where(within, swing, 0.0).max()
+    table = torsional("map", truck, "--worst", "1", "--order", "3").out
+    line = next(line for line in table.splitlines() if line.startswith("gearbox_input"))
+    assert float(line.split()[4]) == pytest.approx(worst, rel=1e-4)
+
+
+def test_expanded_model_is_the_same_model(torsional: Run, truck: str) -> None:
+    assert torsional("check", truck, "--expand", "-o", "parts.yaml").code == 0
+    original, expanded = (load_model(path) for path in (truck, "parts.yaml"))
+    for gear in ("1", "12"):
+        a, b = (assemble(model.powertrain(gear)) for model in (original, expanded))
+        for name in ("M", "C", "K"):
+            np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+    printed = torsional("check", truck, "--expand")
+    assert printed.out == Path("parts.yaml").read_text(encoding="utf-8")
+
+
+def test_check_tells_the_stop_that_is_reached(torsional: Run, truck: str) -> None:
+    free = json.loads(torsional("check", truck, "--json").out)
+    (spring,) = (row for row in free["equilibrium"] if row["connection"] == "dmf")
+    # 2500 Nm on 13 kNm/rad; the stop waits at 3500 Nm on the same stiffness
+    assert spring["travel"]["value"] == pytest.approx(2500 / 13e3, rel=1e-12)
+    assert spring["to_stop"]["value"] == pytest.approx(1000 / 13e3, rel=1e-12)
+    told = torsional("check", truck, "--torque", "3.6 kNm")
+    assert told.code == 0
+    assert "warning: dmf: the mean torque of 3600 Nm presses it onto its stop" in told.err
+
+
+def test_check_doubts_units(torsional: Run, truck: str) -> None:
+    told = torsional("check", truck, "--set", "clutch.stiffness=0.025")
+    assert told.code == 0
+    assert "warning: clutch.stiffness: 0.025 Nm/rad is unusual" in told.err
+    assert "Hz, unusual for a powertrain" in told.err
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_new_writes_a_model_that_loads(torsional: Run, kind: str) -> None:
+    assert torsional("new", kind, "-o", "my.yaml").code == 0
+    assert torsional("check", "my.yaml", "--quiet").code == 0
+    assert torsional("new", kind).out == Path("my.yaml").read_text(encoding="utf-8")
+
+
+def test_new_replaces_nothing_unasked(torsional: Run) -> None:
+    Path("my.yaml").write_text("mine\n", encoding="utf-8")
+    refused = torsional("new", "-o", "my.yaml")
+    assert refused.code == 2
+    assert "--force" in refused.err
+    assert Path("my.yaml").read_text(encoding="utf-8") == "mine\n"
+    assert torsional("new", "-o", "my.yaml", "--force").code == 0
+    assert load_model("my.yaml").gears
+
+
+def test_schema_is_json_and_names_the_blocks(torsional: Run) -> None:
+    printed = torsional("schema")
+    assert torsional("schema", "-o", "s.json").code == 0
+    schema = json.loads(Path("s.json").read_text(encoding="utf-8"))
+    assert schema == json.loads(printed.out)
+    assert {"engine", "absorber", "clutch", "gearbox"} <= set(schema["properties"])
+
+
+def test_report_writes_one_page(torsional: Run) -> None:
+    smf = ROOT / "examples" / "truck_smf.yaml"
+    text = (ROOT / "examples" / "truck_dmf.yaml").read_text(encoding="utf-8")
+    document = YAML(typ="safe").load(text)
+    document["gearbox"] |= {"ratios": [1.0], "stiffness": 2.5e5}
+    one_gear = {
+        **document,
+        "engine": {**document["engine"], "full_load": {"speed": ["600 rpm", "2000 rpm"], "torque": [2e3, 2e3]}},
+    }
+    Path("one.json").write_text(json.dumps(one_gear), encoding="utf-8")
+    told = torsional("report", "one.json", "--compare", smf, "--set", "gearbox.ratios=[1.27]", "--json")
+    assert told.code == 0
+    assert [model["name"] for model in json.loads(told.out)["models"]] == [document["name"], load_model(smf).name]
+    page = Path("report.html").read_text(encoding="utf-8")
+    assert page.lstrip().lower().startswith("<!doctype html>")
+    assert document["name"] in page
+    assert sorted(path.name for path in Path().iterdir()) == ["one.json", "report.html"]
+
+
+def test_warmup_tells_times(torsional: Run) -> None:
+    times = json.loads(torsional("warmup", "--json").out)["times"]
+    assert {"modes", "respond", "map"} <= set(times)
+    assert all(time["units"] == "s" and time["value"] >= 0 for time in times.values())
+
+
+@pytest.mark.full
+def test_after_warmup_nothing_is_left_to_compile(process: Run, truck: str, tmp_path: Path) -> None:
+    kept = tmp_path / "kernels"
+    assert process("warmup", NUMBA_CACHE_DIR=str(kept)).code == 0
+    before = sorted(path.name for path in kept.rglob("*.nbc"))
+    assert before
+    for command in ("check", "modes", "respond", "map", "campbell"):
+        assert process(command, truck, "--quiet", NUMBA_CACHE_DIR=str(kept)).code == 0
+        assert sorted(path.name for path in kept.rglob("*.nbc")) == before, command
+
+
+def test_version(torsional: Run) -> None:
+    from torsional import __version__
+
+    assert torsional("--version").out == f"torsional {__version__}\n"
