@@ -59,6 +59,19 @@ REFUSED: list[tuple[str, Callable[[], object], str]] = [
         "cannot turn together",
     ),
     (
+        "contradiction through shafts, bearings on the ground",
+        lambda: Powertrain(
+            {
+                **discs("a", "b", "c"),
+                "bearing": Damper("a", damping=1.0),
+                "s": Shaft("a", "b", 1.0),
+                "t": Shaft("b", "c", 1.0),
+                "g": GearPair("a", "c", 3.0),
+            }
+        ),
+        "cannot turn together",
+    ),
+    (
         "everything held",
         lambda: Powertrain({**discs("a"), "brake": Brake("a")}),  # type: ignore[dict-item]
         "every node is held",

@@ -65,7 +65,7 @@ def weight_rows(stamps: Iterable[Stamp], nodes: Sequence[str]) -> Array:
 def _nodes(stamps: Sequence[Stamp]) -> tuple[str, ...]:
     nodes = dict.fromkeys(node for stamp in stamps for node in stamp.weights if node != GROUND)
     if not any(isinstance(stamp, Mass) for stamp in stamps):
-        raise ModelError("a powertrain needs at least one inertia", remedy="add Inertia(...) for every rotating body")
+        raise ModelError("a powertrain needs at least one inertia", remedy="give every rotating body an inertia")
     return tuple(nodes)
 
 
@@ -81,7 +81,7 @@ def _known(stamps: Sequence[Stamp], nodes: Sequence[str]) -> None:
             raise ModelError(
                 f"node '{node}' has no inertia",
                 where=stamp.name,
-                remedy=f"{hint}give the node an Inertia; known nodes: {', '.join(sorted(heavy)[:12])}",
+                remedy=f"{hint}give the node an inertia; known nodes: {', '.join(sorted(heavy)[:12])}",
             )
 
 
@@ -145,7 +145,7 @@ def _speed_ratio(
         if speed.any():
             break
     held = {node for stamp in conditions if GROUND in stamp.weights for node in stamp.weights}
-    if not any(GROUND in stamp.weights for stamp in stamps):
+    if not any(GROUND in stamp.weights for stamp in (*elastic, *conditions)):
         _turning(parts, nodes, speed, held)
     return speed
 
@@ -186,5 +186,5 @@ def _inertial(stamps: Sequence[Stamp], nodes: Sequence[str], solved: Elimination
         raise ModelError(
             f"node '{node}' has no inertia",
             where=node,
-            remedy="give it an Inertia, or leave the node out and join its neighbours directly",
+            remedy="give it an inertia, or leave the node out and join its neighbours directly",
         )

@@ -363,7 +363,7 @@ MACHINE = [
         "b: pinion, stiffness",
         "b: propeller, stiffness",
         (
-            "components.shaft (line 5): node 'propeller' has no inertia; give the node an Inertia; known "
+            "components.shaft (line 5): node 'propeller' has no inertia; give the node an inertia; known "
             "nodes: engine, pinion, wheel"
         ),
     ),
@@ -601,7 +601,7 @@ WHOLE = [
     (
         "no inertia at all",
         "torsional: 1\nname: n\ncomponents:\n  s: {type: shaft, a: x, b: y, stiffness: 1}\n",
-        ("components (line 3): a powertrain needs at least one inertia; add Inertia(...) for every rotating body"),
+        ("components (line 3): a powertrain needs at least one inertia; give every rotating body an inertia"),
     ),
     (
         "empty block",
