@@ -298,7 +298,7 @@ class TestWarnings:
             ({"absorber": {"primary_inertia": 1.2e9}}, "or gmm² was meant"),
             ({"gearbox": {"ratios": [14, 1494], "stiffness": 3e5}}, "gearbox.ratios.1: 1494 is unusual"),
             (
-                {"components": {"x": {"type": "shaft", "a": "axle", "b": "wheels", "stiffness": 20}}},
+                {"components": {"x": {"type": "shaft", "a": "gearbox_input", "b": "clutch_disc", "stiffness": 20}}},
                 "components.x.stiffness",
             ),
         ],
