@@ -51,11 +51,15 @@ def stage_stiffnesses(law: Hinges) -> list[float]:
     >>> stage_stiffnesses(Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6))
     [8000.0, 24000.0]
     """
-    end = max((stop for stop in law.stops if stop > 0), default=np.inf)
+    return [float(value) for value in law.tangent(np.array(stage_angles(law))) if value > 0]
+
+
+def stage_angles(law: Hinges) -> list[float]:
+    """An angle [rad] inside each stage in drive, from zero to the stop."""
+    end = min((stop for stop in law.stops if stop > 0), default=np.inf)
     edges = [0.0, *sorted(gap for gap in law.gaps if 0 < gap < end)]
     inside = [0.5 * (a + b) for a, b in pairwise(edges)]
-    inside.append(0.5 * (edges[-1] + end) if np.isfinite(end) else edges[-1] + 1.0)
-    return [float(value) for value in law.tangent(np.array(inside)) if value > 0]
+    return [*inside, 0.5 * (edges[-1] + end) if np.isfinite(end) else edges[-1] + 0.1]
 
 
 def chain(powertrain: Powertrain) -> Chain:

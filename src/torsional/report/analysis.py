@@ -164,17 +164,21 @@ def continued(first: Array, own: Array) -> Array:
 
 def _variant(model: Model, label: str, grid: tuple[Array, Array]) -> Variant:
     met = campbell(model)
-    groups = {"absorber mode": model.landmarks.springs} if model.landmarks.springs else {}
-    middle = met.sel(speed=float(np.mean(model.operation.speed)), method="nearest")
-    names = {}
-    for gear in met.gear.values:
-        here = middle.sel(gear=gear)
-        here = here.isel(mode=np.isfinite(here.frequency.values))
-        names[str(gear)] = [name.replace("_", " ") for name in named_modes(here, groups)]
+    names = {str(gear): named(model, met, str(gear)) for gear in met.gear.values}
+    if model.engine is None:
+        return Variant(label, model, met, names, None, "The model has no engine, so this page tells its modes only.")
     try:
         return Variant(label, model, met, names, _response(model, *grid))
     except ModelError as error:  # modes need less than a response: a report tells them and says what is missing
-        return Variant(label, model, met, names, None, str(error))
+        return Variant(label, model, met, names, None, f"The vibration under engine torque is not told: {error}.")
+
+
+def named(model: Model, met: xr.Dataset, gear: str) -> list[str]:
+    """Names of a gear's modes in the middle of the operating range, by where their elastic energy is."""
+    groups = {"absorber mode": model.landmarks.springs} if model.landmarks.springs else {}
+    here = met.sel(gear=gear).sel(speed=float(np.mean(model.operation.speed)), method="nearest")
+    here = here.isel(mode=np.isfinite(here.frequency.values))
+    return [name.replace("_", " ") for name in named_modes(here, groups)]
 
 
 def _response(model: Model, speeds: Array, torques: Array) -> Response:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from torsional.report.analysis import Comparison, Variant
 from torsional.report.finding import Finding
-from torsional.report.levels import irregularities, largest, travel, unsolved
+from torsional.report.levels import irregularities, largest, unsolved
 from torsional.report.ratios import against
 from torsional.report.resonances import resonances
 from torsional.report.springs import springs_of
+from torsional.report.travels import stage_modes, travel
 
 __all__ = ["Finding", "findings"]
 
@@ -22,10 +23,13 @@ def findings(comparison: Comparison) -> list[tuple[str, list[Finding]]]:
 
 
 def _about(variant: Variant) -> list[Finding]:
-    found = resonances(variant)
+    found, springs = resonances(variant), springs_of(variant)
+    absorber = [spring for spring in springs if spring.name in variant.model.landmarks.springs]
+    for spring in absorber[:1]:
+        found += stage_modes(variant, spring)
     if variant.response is None:
-        return [*found, Finding("missing", f"No vibration under engine torque is told: {variant.missing}.")]
-    found += [largest(variant, variant.response), *irregularities(variant.response)]
-    for spring in springs_of(variant):
-        found += travel(variant, variant.response, spring)
+        return [*found, Finding("missing", variant.missing)]
+    found += [largest(variant.response), *irregularities(variant.response)]
+    for spring in springs:
+        found += travel(variant.response, spring)
     return found + unsolved(variant.response)

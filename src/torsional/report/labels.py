@@ -72,5 +72,6 @@ def gears_told(gears: Sequence[str], known: Sequence[str]) -> str:
             runs[-1].append(place)
         else:
             runs.append([place])
-    parts = [known[run[0]] if len(run) == 1 else f"{known[run[0]]} to {known[run[-1]]}" for run in runs]
+    spans = [[f"{known[run[0]]} to {known[run[-1]]}"] if len(run) > 2 else [known[i] for i in run] for run in runs]
+    parts = [part for span in spans for part in span]
     return ("gear " if len(gears) == 1 else "gears ") + listed(parts)

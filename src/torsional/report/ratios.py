@@ -8,7 +8,7 @@ import xarray as xr
 from torsional.numerics.arrays import Array
 from torsional.report.analysis import Comparison, Response, Variant
 from torsional.report.finding import Finding
-from torsional.report.labels import listed, rounded, told
+from torsional.report.labels import gears_told, listed, rounded, told
 from torsional.report.levels import peak
 
 
@@ -41,19 +41,21 @@ def _percent(share: float) -> str:
 
 
 def louder(ratio: xr.DataArray) -> list[Finding]:
-    """Where the first variant vibrates more than the other: gears with their speeds."""
+    """Where the first variant vibrates more than the other: speeds, with the gears that share them."""
     above = (ratio > 1).any("torque")
-    places, values = [], {}
+    alike: dict[str, list[str]] = {}
+    values = {}
     for gear in ratio.gear.values[above.any("speed").values]:
-        runs = _runs(ratio.speed.values, above.sel(gear=gear).values)
-        most = float(ratio.sel(gear=gear).max())
-        values[str(gear)] = most
-        name = f"gear {gear} at " if gear else ""
-        places.append(f"{name}{listed(runs)} (up to {rounded(most)})")
-    if not places:
-        return []
-    more = f"; and {len(places) - 8} gears more" if len(places) > 8 else ""
-    return [Finding("louder", f"Cells above 1: {'; '.join(places[:8])}{more}.", values)]
+        alike.setdefault(listed(_runs(ratio.speed.values, above.sel(gear=gear).values)), []).append(str(gear))
+        values[str(gear)] = float(ratio.sel(gear=gear).max())
+    known = [str(gear) for gear in ratio.gear.values]
+    places = []
+    for speeds, gears in alike.items():
+        where = gears_told(gears, known)
+        most = rounded(max(values[gear] for gear in gears))
+        places.append(f"{where} at {speeds} (up to {most})" if where else f"{speeds} (up to {most})")
+    more = "; and elsewhere" if len(places) > 8 else ""
+    return [Finding("louder", f"Cells above 1: {'; '.join(places[:8])}{more}.", values)] if places else []
 
 
 def _runs(speeds: Array, inside: Array) -> list[str]:

@@ -14,9 +14,10 @@ from torsional.quantities import bound, swing
 from torsional.report.analysis import Comparison, Response, Variant
 from torsional.report.blocks import Picture, picture
 from torsional.report.labels import rounded, told
-from torsional.report.levels import peak, widest
+from torsional.report.levels import peak
 from torsional.report.pictures import in_gear
 from torsional.report.springs import Spring
+from torsional.report.travels import widest
 from torsional.results import dataset
 from torsional.solvers.campbell import CANDIDATES, full_load
 
