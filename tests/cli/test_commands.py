@@ -111,6 +111,18 @@ def same_variable(saved: Any, told: dict[str, Any]) -> None:
         np.testing.assert_array_equal(saved.values, values if saved.dtype.kind in "OUT" else values.astype(saved.dtype))
 
 
+@pytest.mark.parametrize("command", ["respond", "map"])
+@pytest.mark.parametrize("places", [["--node", "wheels"], ["--element", "clutch"]], ids=["node", "element"])
+def test_pictures_and_tables_of_one_kind_of_place(torsional: Run, truck: str, command: str, places: list[str]) -> None:
+    told = torsional(
+        command, truck, "--order", "3", *places, "-o", "p.png", "-o", "p.csv", "-o", "p.nc", "-o", "p.json"
+    )
+    assert told.code == 0, told.err
+    assert set(load_results("p.nc").dims) & {"node", "element"} == {places[0].removeprefix("--")}
+    assert places[1] in told.out
+    assert places[1] in Path("p.csv").read_text(encoding="utf-8")
+
+
 def test_quiet_prints_nothing(torsional: Run, truck: str) -> None:
     told = torsional("modes", truck, "--quiet", "-o", "out.csv")
     assert (told.code, told.out, told.err) == (0, "", "")

@@ -99,6 +99,7 @@ def _coordinates(data: xr.Dataset, rows: Sequence[str]) -> Iterator[tuple[str, l
 
 
 def _grid(data: xr.Dataset, rows: Sequence[str]) -> xr.DataArray:
+    """A variable over all rows that values are spread to."""
     first = next(iter(data.data_vars.values()))
     return first.isel({dim: 0 for dim in first.dims if dim in PLACES}, drop=True).transpose(*rows)
 

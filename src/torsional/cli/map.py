@@ -11,7 +11,7 @@ import xarray as xr
 from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.failures import complain
-from torsional.cli.places import chosen_places, speed_ratios, together
+from torsional.cli.places import chosen_places, speed_ratios, together, without_empty
 from torsional.cli.progress import progress
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
@@ -42,8 +42,8 @@ def run(
     nodes, elements = chosen_places(machine, gears[-1], node, element)
     with progress("gears", request.quiet or request.as_json) as moved:
         n = HALF_ORDERS if asked is None else asked
-        full = response_map(machine, speeds, torques, gears, n, nodes=nodes, elements=elements, progress=moved)
-        data = reduced(full, machine)
+        found = response_map(machine, speeds, torques, gears, n, nodes=nodes, elements=elements, progress=moved)
+        data, full = reduced(found, machine), without_empty(found)
     _warn_unsolved(full)
     settings = {"gears": gears, "orders": full.order.values}
     tables = [_summary(full, machine), *_tables(data, worst)]
@@ -58,7 +58,7 @@ def reduced(full: xr.Dataset, model: Model) -> xr.Dataset:
     parts = [_one_gear(full.isel(gear=[i]), model) for i in range(full.sizes["gear"])]
     found = xr.concat(parts, "gear", combine_attrs="override")
     kept = full[["within_full_load", "travel"]].assign(unsolved=(full.status > 1).any("order"))
-    return found.merge(kept).assign_attrs(full.attrs)
+    return without_empty(found.merge(kept)).assign_attrs(full.attrs)
 
 
 def _one_gear(full: xr.Dataset, model: Model) -> xr.Dataset:
@@ -89,11 +89,12 @@ def _tables(data: xr.Dataset, count: int) -> list[Table]:
     """The cells within full load in which the swing is largest, for each place."""
     found = []
     for dim, kind in (("node", "acceleration"), ("element", "torque")):
+        if dim not in data.dims:
+            continue
         columns = [Column(dim), Column("gear"), Column("torque", "torque"), Column("speed", "speed")]
         columns += [Column("half p-p", kind), Column("bound", kind)]
         rows = [row for place in data[dim].values for row in _worst(data, dim, kind, place, count)]
-        if rows:
-            found.append(Table(f"{kind.capitalize()}: half peak-to-peak, worst cells within full load", columns, rows))
+        found.append(Table(f"{kind.capitalize()}: half peak-to-peak, worst cells within full load", columns, rows))
     return found
 
 
@@ -113,21 +114,29 @@ def _worst(data: xr.Dataset, dim: str, kind: str, place: str, count: int) -> lis
 
 
 def _picture(data: xr.Dataset) -> Figure:
-    """Accelerations over speed and torque: of every node in one gear, or of the last node in every gear."""
+    """Half peak-to-peak over speed and torque: of every place in one gear, or of one place in every gear."""
     from torsional.plots import panels, plot_map
     from torsional.plots.maps import colour_limits
     from torsional.plots.style import figure_of, readable
 
-    one = data.sizes["gear"] == 1
-    cells = [{"gear": 0, "node": i} for i in range(data.sizes["node"])] if one else []
-    cells = cells or [{"gear": i, "node": -1} for i in range(data.sizes["gear"])]
-    values = [data.acceleration_swing.isel(cell) for cell in cells]
-    columns = min(len(cells), 2 if one else 4)
-    drawn = panels(-(-len(cells) // columns), columns, (6.0, 4.2))
+    values = _pictured(data)
+    columns = min(len(values), 2 if data.sizes["gear"] == 1 else 4)
+    drawn = panels(-(-len(values) // columns), columns, (6.0, 4.2))
+    limits = None if data.sizes["gear"] == 1 else colour_limits(*(value.values for value in values))
     for axes, value in zip(drawn, values, strict=False):
-        title = readable(value.node.values) + (f", gear {value.gear.values}" if str(value.gear.values) else "")
-        limits = None if one else colour_limits(*(v.values for v in values))
+        place = value.node if "node" in value.coords else value.element
+        title = readable(place.values) + (f", gear {value.gear.values}" if str(value.gear.values) else "")
         plot_map(value, within=data.within_full_load, limits=limits, title=title, axes=axes)
-    for axes in drawn[len(cells) :]:
+    for axes in drawn[len(values) :]:
         axes.remove()
     return figure_of(drawn[0])
+
+
+def _pictured(data: xr.Dataset) -> list[xr.DataArray]:
+    """The maps to draw; of several gears those of the last node, or of the first connection if no node is asked for."""
+    nodes = [data.acceleration_swing.isel(node=i) for i in range(data.sizes.get("node", 0))]
+    elements = [data.torque_swing.isel(element=i) for i in range(data.sizes.get("element", 0))]
+    if data.sizes["gear"] == 1:
+        return [value.isel(gear=0) for value in [*nodes, *elements]]
+    chosen = nodes[-1] if nodes else elements[0]
+    return [chosen.isel(gear=i) for i in range(data.sizes["gear"])]

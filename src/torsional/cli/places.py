@@ -60,6 +60,11 @@ def together(angle: xr.DataArray, torque: xr.DataArray, ratio: Sequence[float]) 
     return told
 
 
+def without_empty(data: xr.Dataset) -> xr.Dataset:
+    """The result without the kind of place of which none is looked at."""
+    return data.drop_dims([dim for dim in ("node", "element") if data.sizes.get(dim) == 0])
+
+
 def speed_ratios(model: Model, gear: str, nodes: Sequence[str]) -> list[float]:
     """Mean speed of each node over the engine's."""
     powertrain = model.powertrain(gear or None)

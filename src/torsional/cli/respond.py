@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
 from torsional.cli.modes import in_gear
-from torsional.cli.places import chosen_places, speed_ratios, together
+from torsional.cli.places import chosen_places, speed_ratios, together, without_empty
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
@@ -79,7 +79,8 @@ def response(
     )
     told = together(found.angle, found.torque, speed_ratios(model, gear, nodes))
     mean = xr.Variable("speed", torques, {"units": "Nm", "long_name": "mean torque", "quantity": "torque"})
-    return found.assign(told).assign(mean_torque=mean).assign_attrs(model=model.name, model_hash=model.hash)
+    named = found.assign(told).assign(mean_torque=mean).assign_attrs(model=model.name, model_hash=model.hash)
+    return without_empty(named)
 
 
 def _parts(model: Model, system: System, speeds: Array, torques: Array, orders: Array) -> Iterator[xr.Dataset]:
@@ -96,8 +97,13 @@ def _parts(model: Model, system: System, speeds: Array, torques: Array, orders: 
 
 def tables(data: xr.Dataset, title: str) -> list[Table]:
     """Peaks of accelerations at nodes and of torques of elements."""
-    kinds = (("node", "acceleration", acceleration(data.angle)), ("element", "torque", data.torque))
-    return [_table(data, dim, kind, orders, title) for dim, kind, orders in kinds if data.sizes[dim]]
+    kinds = (("node", "acceleration"), ("element", "torque"))
+    return [_table(data, dim, kind, orders_of(data, dim), title) for dim, kind in kinds if dim in data.dims]
+
+
+def orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
+    """Orders of the acceleration at nodes, or of the torque of elements."""
+    return acceleration(data.angle) if dim == "node" else data.torque
 
 
 def _table(data: xr.Dataset, dim: str, kind: str, orders: xr.DataArray, title: str) -> Table:
@@ -127,10 +133,8 @@ def _picture(data: xr.Dataset) -> Figure:
     from torsional.plots import panels, plot_order_cuts
     from torsional.plots.style import figure_of, readable
 
-    places: Mapping[str, xr.DataArray] = {
-        **{str(node): acceleration(data.angle).sel(node=node) for node in data.node.values},
-        **{str(name): data.torque.sel(element=name) for name in data.element.values},
-    }
+    dims = [dim for dim in ("node", "element") if dim in data.dims]
+    places = {str(name): orders_of(data, dim).sel({dim: name}) for dim in dims for name in data[dim].values}
     columns = 1 if len(places) == 1 else 2
     drawn = panels(-(-len(places) // columns), columns)
     for axes, (place, values) in zip(drawn, places.items(), strict=False):
