@@ -355,7 +355,7 @@ MACHINE = [
         "b: pinoin, stiffness",
         (
             "components.shaft (line 5): node 'pinoin' has no inertia; did you mean 'pinion'? give the node "
-            "an Inertia; known nodes: engine, pinion, wheel"
+            "an inertia; known nodes: engine, pinion, wheel"
         ),
     ),
     (
@@ -443,7 +443,7 @@ MACHINE = [
         "  pendulum: {type: centrifugal_pendulum, carrier: weel, mass: 1, distance: 0.1, order: 2}\n",
         (
             "components.pendulum (line 9): node 'weel' has no inertia; did you mean 'wheel'? give the node "
-            "an Inertia; known nodes: engine, pendulum, pinion, wheel"
+            "an inertia; known nodes: engine, pendulum, pinion, wheel"
         ),
     ),
     (
