@@ -104,7 +104,7 @@ def map_picture(comparison: Comparison, gear: str) -> Picture:
     ratios = [(v, ratio) for v, _ in held if v is not comparison.first and (ratio := comparison.ratio(v)) is not None]
     ratios = [(v, ratio) for v, ratio in ratios if gear in ratio.gear.values]
     count = len(held) + len(ratios)
-    columns = count if count <= 3 else 2
+    columns = 2 if count == 4 else min(count, 3)
     axes = plots.panels(math.ceil(count / columns), columns, (4.4, 3.6))
     for drawn, (variant, response) in zip(axes, held, strict=False):
         look = {"within": response.within, "full_load": response.curve, "limits": limits, "title": variant.label}
