@@ -45,7 +45,7 @@ docs: $(VENV)/.installed-docs  ## build the pages, executing them; a warning is 
 	@echo "The pages are in docs/_build/html/index.html"
 
 examples: $(VENV)/.installed-run  ## check every model file and run every script in examples/
-	@set -e; for file in examples/*.yaml; do [ -e "$$file" ] || continue; echo "torsional check $$file"; $(BIN)/torsional check "$$file"; done
+	@set -e; for file in examples/*.yaml; do [ -e "$$file" ] || continue; echo "torsional check $$file"; $(BIN)/torsional check --quiet "$$file"; done
 	@set -e; for file in examples/*.py; do [ -e "$$file" ] || continue; echo "python $$file"; $(BIN)/python "$$file"; done
 
 check: lint types imports examples docs test  ## everything CI runs
