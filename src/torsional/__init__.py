@@ -23,8 +23,11 @@ _HOMES = {
     "powertrain": "Powertrain",
     "quantities": "acceleration amplitude angular_velocity bound dominant_element irregularity named_modes order_share "
     "order_speed swing waveform",
+    "report": "write_report",
     "results": "load_results save_results",
+    "solvers.campbell": "campbell",
     "solvers.equilibrium": "OperatingPoint equilibrium linearize",
+    "solvers.full_load": "full_load_response",
     "solvers.harmonic": "harmonic_response",
     "solvers.modal": "damped_modes modal",
     "solvers.map": "response_map",

@@ -81,6 +81,19 @@ class Model:
         """The last gear listed, the analyses' default."""
         return self.gear_names[-1]
 
+    @property
+    def absorber_mode(self) -> str:
+        """What engineers call the mode in which the absorber's springs work."""
+        known = {"dual mass": "DMF mode", "planetary dual mass": "DMF mode", "power split": "PSVA mode"}
+        return next((name for kind, name in known.items() if self.absorber.startswith(kind)), "absorber mode")
+
+    @property
+    def mode_groups(self) -> dict[str, tuple[str, ...]]:
+        """Names of modes by the connections that hold most of their elastic energy, for `named_modes`."""
+        marks = self.landmarks
+        found = {self.absorber_mode: marks.springs, "clutch mode": (marks.clutch,) if marks.clutch else ()}
+        return {name: members for name, members in found.items() if members}
+
     def powertrain(self, gear: str | int | None = None) -> Powertrain:
         """The powertrain with one gear engaged (default: the last listed)."""
         name = self.top_gear if gear is None else str(gear)

@@ -33,7 +33,7 @@ CASES = [pytest.param(name, more, id=name) for name, more in ANALYSES.items()]
     ("command", "expected"),
     [
         (["check"], ["dual mass flywheel", "to the stop [deg]", "First elastic modes", "full load peak"]),
-        (["modes"], ["frequency [Hz]", "absorber mode", "clutch mode", "order 3 meets it at [rpm]", "dmf 63 %"]),
+        (["modes"], ["frequency [Hz]", "DMF mode", "clutch mode", "order 3 meets it at [rpm]", "dmf 63 %"]),
         (["respond"], ["half peak-to-peak", "sum as a bound", "gearbox_input", "clutch", "peak [rad/s²]", "full load"]),
         (["map", "--worst", "1"], ["cells within full load", "gearbox_input", "bound [Nm]", "1 gears × 26 torques"]),
         (["campbell", "--order", "3"], ["Speeds at which orders meet modes in gear 12", "order 3 at [rpm]"]),

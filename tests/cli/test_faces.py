@@ -142,5 +142,5 @@ def test_colours_are_for_terminals_that_want_them(truck: str, variable: str, col
     )
     text = b"".join(seen).decode("utf-8")
     assert os.waitstatus_to_exitcode(status) == 0
-    assert "absorber mode" in text
+    assert "DMF mode" in text
     assert ("\x1b[" in text) is coloured

@@ -29,7 +29,7 @@ def interference(truck: Model) -> xr.Dataset:
 
 @pytest.fixture(scope="session")
 def names(interference: xr.Dataset) -> dict[str, list[str]]:
-    groups = {"absorber mode": ("dmf",)}
+    groups = {"DMF mode": ("dmf",)}
     return {str(g): named_modes(interference.sel(gear=g).isel(speed=0), groups) for g in interference.gear.values}
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
-from torsional.cli.modes import groups, in_gear
+from torsional.cli.modes import in_gear
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
 from torsional.model import Model
@@ -50,7 +50,7 @@ def run(
 def _table(data: xr.Dataset, model: Model, gear: str) -> Table:
     middle = data.isel(speed=data.sizes["speed"] // 2)
     kept = np.flatnonzero(middle.frequency.values > 0)
-    names = named_modes(middle.isel(mode=np.flatnonzero(np.isfinite(middle.frequency.values))), groups(model))
+    names = named_modes(middle.isel(mode=np.flatnonzero(np.isfinite(middle.frequency.values))), model.mode_groups)
     columns = [Column("mode", "number"), Column("name"), Column("frequency", "frequency")]
     columns += [Column(f"order {n:g} at", "speed") for n in data.order.values]
     rows = [[int(i), names[i], float(middle.frequency[i]), *map(float, data.crossing[i].values)] for i in kept]

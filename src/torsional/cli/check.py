@@ -13,7 +13,7 @@ from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
 from torsional.cli.failures import complain
-from torsional.cli.modes import groups, in_gear
+from torsional.cli.modes import in_gear
 from torsional.cli.outputs import text_writer, written
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
@@ -111,7 +111,7 @@ def standing(model: Model, point: OperatingPoint) -> Iterator[Document]:
 def first_modes(model: Model, system: System) -> Iterator[Document]:
     """The first elastic modes at standstill of the mean twist, by name."""
     found = modal(system)
-    names = named_modes(found, groups(model))
+    names = named_modes(found, model.mode_groups)
     elastic = np.flatnonzero(found.frequency.values > 0)[:SHOWN_MODES]
     for i in elastic:
         yield {"name": names[i], "frequency": amount(float(found.frequency[i]), "frequency")}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,19 +52,13 @@ def run(
     deliver(answer, request)
 
 
-def groups(model: Model) -> Mapping[str, Sequence[str]]:
-    """Names of modes by the parts that an engineer asks for first."""
-    marks = model.landmarks
-    return {"absorber mode": marks.springs, "clutch mode": (marks.clutch,) if marks.clutch else ()}
-
-
 def modes_of(model: Model, gear: str, torque: float, speed: float, order: float | None) -> xr.Dataset:
     """What `modal` finds, with names, the damped modes next to it, and the speed at which the order meets each mode."""
     system, _ = operated(model, torque, gear or None)
     found, damped = modal(system, speed), damped_modes(system, speed)
     partner = paired(found, damped)
     result = found.assign(
-        name=("mode", np.array(named_modes(found, groups(model)))),
+        name=("mode", np.array(named_modes(found, model.mode_groups))),
         damped_frequency=("mode", damped.frequency.values[partner], damped.frequency.attrs),
         damped_ratio=("mode", damped.damping_ratio.values[partner], damped.damping_ratio.attrs),
     )

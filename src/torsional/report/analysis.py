@@ -175,10 +175,9 @@ def _variant(model: Model, label: str, grid: tuple[Array, Array]) -> Variant:
 
 def named(model: Model, met: xr.Dataset, gear: str) -> list[str]:
     """Names of a gear's modes in the middle of the operating range, by where their elastic energy is."""
-    groups = {"absorber mode": model.landmarks.springs} if model.landmarks.springs else {}
     here = met.sel(gear=gear).sel(speed=float(np.mean(model.operation.speed)), method="nearest")
     here = here.isel(mode=np.isfinite(here.frequency.values))
-    return [name.replace("_", " ") for name in named_modes(here, groups)]
+    return [name.replace("_", " ") for name in named_modes(here, model.mode_groups)]
 
 
 def _response(model: Model, speeds: Array, torques: Array) -> Response:

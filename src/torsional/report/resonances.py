@@ -21,7 +21,7 @@ def resonances(variant: Variant) -> list[Finding]:
         found = [
             Finding("resonance", text.replace(" in any gear", "" if not any(variant.model.gears) else " in any gear"))
         ]
-    below = _crossings(variant, 0.0, operation.speed[0] * (1 - 1e-9)).get("absorber mode", [])
+    below = _crossings(variant, 0.0, operation.speed[0] * (1 - 1e-9)).get(variant.model.absorber_mode, [])
     return found + ([_below(variant, below, order)] if below else [])
 
 
@@ -57,7 +57,7 @@ def _below(variant: Variant, at: list[tuple[str, float]], order: float) -> Findi
     gear, speed = max(at, key=lambda p: p[1])
     idle = variant.model.operation.idle
     where = f" (gear {gear})" if gear else ""
-    text = f"The absorber mode is met by order {order:g} at {told(speed, 'speed')} at most{where}, "
+    text = f"The {variant.model.absorber_mode} is met by order {order:g} at {told(speed, 'speed')} at most{where}, "
     text += f"{rounded(speed / idle, 2)} times the idle speed of {told(idle, 'speed')}."
     return Finding("absorber mode", text, {"speed": speed, "idle": idle})
 

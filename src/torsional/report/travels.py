@@ -70,15 +70,15 @@ def stage_modes(variant: Variant, spring: Spring) -> list[Finding]:
     gear, order = variant.model.top_gear, variant.main_order
     if len(angles) < 2 or order is None or not isinstance(spring.law, Hinges):
         return []
-    parts, values = [], {}
+    parts, values, wanted = [], {}, variant.model.absorber_mode
     for torque in (float(spring.law.torque(angle)) for angle in angles):
         met = campbell(variant.model, torque, [gear] if gear else None, orders=[order])
         at = met.crossing.isel(gear=0, order=0).values
-        mode = next((i for i, name in enumerate(named(variant.model, met, gear)) if name == "absorber mode"), None)
+        mode = next((i for i, name in enumerate(named(variant.model, met, gear)) if name == wanted), None)
         if mode is not None and np.isfinite(at[mode]):
             parts.append(f"{told(float(at[mode]), 'speed')} under {told(torque, 'torque')}")
             values[told(torque, "torque")] = float(at[mode])
     if len(parts) < 2:
         return []
-    text = f"Stage by stage the absorber mode is met by order {order:g} at {listed(parts)} of mean torque"
+    text = f"Stage by stage the {wanted} is met by order {order:g} at {listed(parts)} of mean torque"
     return [Finding("stage modes", f"{text}{f' (gear {gear})' if gear else ''}.", values)]
