@@ -27,11 +27,11 @@ _HOMES = {
     "results": "load_results save_results",
     "solvers.campbell": "campbell",
     "solvers.equilibrium": "OperatingPoint equilibrium linearize",
-    "solvers.full_load": "full_load_response",
     "solvers.harmonic": "harmonic_response",
     "solvers.modal": "damped_modes modal",
     "solvers.map": "response_map",
     "solvers.operating": "operated",
+    "solvers.run_up": "full_load_response run_up_response",
     "stamps": "Connection Constraint Mass SpeedSwitch",
     "system": "System assemble",
 }

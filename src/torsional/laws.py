@@ -50,7 +50,7 @@ class Law:
         kernel: Any = type(self).kernel
         broadcast: Any = _broadcast
         if arrays[0].size < _FEW:  # the same functions without their compilation, which outlasts a few thousand calls
-            kernel, broadcast = kernel.py_func, broadcast.py_func
+            kernel, broadcast = (getattr(f, "py_func", f) for f in (kernel, broadcast))
         out = broadcast(kernel, self.parameters, *(np.ravel(v) for v in arrays))
         return tuple(row.reshape(arrays[0].shape) for row in out)
 

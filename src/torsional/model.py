@@ -100,7 +100,7 @@ class Model:
         if name not in self.gear_names:
             raise ModelError(f"there is no gear '{name}'", where="gear", remedy=nearest(name, self.gear_names))
         engaged = self.gears[name].components if name else {}
-        return Powertrain([*self.components.items(), *engaged.items()], self.parts)
+        return Powertrain([*self.components.items(), *engaged.items()], self.parts, self.landmarks.crankshaft)
 
     def speeds(self, count: int) -> Array:
         """Evenly spaced mean speeds of the operating range [rad/s]."""

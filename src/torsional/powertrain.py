@@ -21,7 +21,8 @@ class Powertrain:
     """Named components that hang together; nodes are the names the components give.
 
     ``components``: {name: component} (or pairs, in which a repeated name is refused); ``parts``: how many connected
-    parts are meant, 2 with an open clutch.  The first node named is the reference of speed ratios.
+    parts are meant, 2 with an open clutch; ``reference``: the node whose mean speed is the engine speed Ω (default: the
+    first that turns).
     Raises ModelError, by name, for unknown, massless or disconnected nodes and for contradictory gears.
 
     >>> from torsional.components import Inertia, Shaft
@@ -33,8 +34,14 @@ class Powertrain:
 
     components: Mapping[str, Component]
     parts: int = 1
+    reference: str = ""
 
-    def __init__(self, components: Mapping[str, Component] | Iterable[tuple[str, Component]], parts: int = 1) -> None:
+    def __init__(
+        self,
+        components: Mapping[str, Component] | Iterable[tuple[str, Component]],
+        parts: int = 1,
+        reference: str = "",
+    ) -> None:
         pairs = list(components.items() if isinstance(components, Mapping) else components)
         for name, component in pairs:
             _checked_name(name, component)
@@ -44,6 +51,7 @@ class Powertrain:
             raise ModelError("two components have the same name", where=repeated[0], remedy="rename one of them")
         object.__setattr__(self, "components", MappingProxyType(dict(pairs)))
         object.__setattr__(self, "parts", parts)
+        object.__setattr__(self, "reference", reference)
         _ = self.structure
 
     @cached_property
@@ -59,7 +67,7 @@ class Powertrain:
     @cached_property
     def structure(self) -> Structure:
         """Nodes, connected parts, coordinates and speed ratios."""
-        return resolve(self.stamps, self.parts)
+        return resolve(self.stamps, self.parts, self.reference)
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -92,17 +100,17 @@ class Powertrain:
             new = component or dataclasses.replace(old, **changes)
         except ModelError as error:
             raise error.located(prefix=name) from None
-        return Powertrain({**self.components, name: new}, self.parts)
+        return Powertrain({**self.components, name: new}, self.parts, self.reference)
 
     def joined(self, parts: Mapping[str, Component]) -> Powertrain:
         """A copy with more components; a name that is taken is refused."""
-        return Powertrain([*self.components.items(), *parts.items()], self.parts)
+        return Powertrain([*self.components.items(), *parts.items()], self.parts, self.reference)
 
     def without(self, *names: str) -> Powertrain:
         """A copy without some components."""
         for name in names:
             _ = self[name]
-        return Powertrain({n: c for n, c in self.components.items() if n not in names}, self.parts)
+        return Powertrain({n: c for n, c in self.components.items() if n not in names}, self.parts, self.reference)
 
     def described(self) -> list[dict[str, object]]:
         """One row a component: name, kind and its fields, for tables and reports."""

@@ -47,7 +47,7 @@ def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     rest = [dim for dim in orders.dims if dim != "order"]
     values = orders.transpose(*rest, "order")
     signal = _synthesized(values.values, np.outer(values.order.values, alpha))
-    coords = {dim: orders.coords[dim] for dim in rest if dim in orders.coords} | {"crank_angle": alpha}
+    coords = {name: c for name, c in orders.coords.items() if "order" not in c.dims} | {"crank_angle": alpha}
     attrs = {**orders.attrs, "amplitude": "signal"}
     return xr.DataArray(signal, dims=(*rest, "crank_angle"), coords=coords, name=orders.name, attrs=attrs)
 
@@ -65,7 +65,7 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     flat = values.values.reshape(-1, values.sizes["order"])
     parts = [np.ptp(_synthesized(flat[i : i + 1024], phase), axis=1) for i in range(0, len(flat), 1024)]
     half = 0.5 * np.concatenate(parts).reshape([values.sizes[dim] for dim in rest])
-    coords = {dim: orders.coords[dim] for dim in rest if dim in orders.coords}
+    coords = {name: c for name, c in orders.coords.items() if "order" not in c.dims}
     attrs = {**orders.attrs, "amplitude": "half peak-to-peak over the cycle"}
     return xr.DataArray(half, dims=rest, coords=coords, name=orders.name, attrs=attrs)
 
@@ -84,8 +84,13 @@ def amplitude(orders: xr.DataArray, order: float) -> xr.DataArray:
 
 
 def irregularity(angle: xr.DataArray) -> xr.DataArray:
-    """Cyclic irregularity (ω_max − ω_min)/ω_mean [-] of nodes that turn at engine speed."""
-    return _as(2 * swing(angular_velocity(angle)) / angle.speed, "irregularity", amplitude="peak-to-peak over mean")
+    """Cyclic irregularity (ω_max − ω_min)/ω_mean [-] of each node, by its own mean speed.
+
+    A coordinate ``speed_ratio`` (node), as results carry it, gives that speed; without it nodes turn at engine speed.
+    """
+    mean = angle.speed * abs(angle.speed_ratio) if "speed_ratio" in angle.coords else angle.speed
+    found = 2 * swing(angular_velocity(angle)) / mean.where(mean > 0)
+    return _as(found, "irregularity", amplitude="peak-to-peak over mean")
 
 
 def order_share(orders: xr.DataArray, order: float) -> xr.DataArray:

@@ -65,8 +65,11 @@ def save_results(result: xr.Dataset, path: str | Path) -> Path:
     parts = {name: _split(v) if np.iscomplexobj(v) else v.variable for name, v in result.data_vars.items()}
     plain = xr.Dataset(parts, result.coords, result.attrs)
     partial = target.with_name(f".{target.name}.partial")
-    plain.to_netcdf(partial, engine="h5netcdf")
-    partial.replace(target)
+    try:
+        plain.to_netcdf(partial, engine="h5netcdf")
+        partial.replace(target)
+    finally:
+        partial.unlink(missing_ok=True)
     return target
 
 

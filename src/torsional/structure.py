@@ -21,7 +21,7 @@ from torsional.stamps import GROUND, Connection, Constraint, Mass, Stamp
 class Structure:
     """θ = ``transform`` q: all ``nodes`` from the independent ``coordinates`` q, scaled so that rigid rotation is ones.
 
-    ``speed_ratio``: mean speed of every node over that of the part's first node; ``parts``: nodes of each connected
+    ``speed_ratio``: mean speed of every node over that of the reference node; ``parts``: nodes of each connected
     part.
     """
 
@@ -32,8 +32,10 @@ class Structure:
     parts: tuple[tuple[str, ...], ...]
 
 
-def resolve(stamps: Sequence[Stamp], parts: int | None = None) -> Structure:
+def resolve(stamps: Sequence[Stamp], parts: int | None = None, reference: str = "") -> Structure:
     """Check the stamps and work out their structure; ``parts`` is the number of connected parts that is meant.
+
+    ``reference`` is the node whose mean speed counts as one (default: the first node that turns).
 
     Raises ModelError, by name, for no masses, nodes without inertia, disconnected parts, contradictory gear loops.
     """
@@ -43,7 +45,7 @@ def resolve(stamps: Sequence[Stamp], parts: int | None = None) -> Structure:
     if parts is not None and len(found) != parts:
         raise _disconnected(found, parts)
     solved, conditions = _condense(stamps, nodes)
-    speed = _speed_ratio(stamps, nodes, found, solved, conditions)
+    speed = _referred(_speed_ratio(stamps, nodes, found, solved, conditions), nodes, reference)
     scale = np.array([speed[i] or 1.0 for i in solved.independent])
     transform = solved.transform * scale
     _inertial(stamps, nodes, solved, transform)
@@ -145,9 +147,19 @@ def _speed_ratio(
         if speed.any():
             break
     held = {node for stamp in conditions if GROUND in stamp.weights for node in stamp.weights}
-    if not any(GROUND in stamp.weights for stamp in (*elastic, *conditions)):
+    holding: list[Connection | Constraint] = [*elastic, *conditions]
+    if not any(GROUND in stamp.weights for stamp in holding):
         _turning(parts, nodes, speed, held)
     return speed
+
+
+def _referred(speed: Array, nodes: Sequence[str], reference: str) -> Array:
+    """Speeds over that of the reference node."""
+    if not reference:
+        return speed
+    if reference not in nodes or speed[nodes.index(reference)] == 0:
+        raise ModelError(f"the reference node '{reference}' does not turn", where="reference", found=reference)
+    return np.asarray(speed / speed[nodes.index(reference)])
 
 
 def _damper(stamp: Connection) -> bool:

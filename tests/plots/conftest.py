@@ -12,7 +12,7 @@ from torsional.files import load_model
 from torsional.model import Model
 from torsional.quantities import acceleration, named_modes
 from torsional.solvers.campbell import campbell
-from torsional.solvers.full_load import full_load_response
+from torsional.solvers.run_up import full_load_response
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

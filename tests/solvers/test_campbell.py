@@ -15,7 +15,7 @@ from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.model import Landmarks, Model
 from torsional.solvers.campbell import campbell, engine_orders, typical_torque
-from torsional.solvers.full_load import full_load_response
+from torsional.solvers.run_up import full_load_response
 from torsional.solvers.map import response_map
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

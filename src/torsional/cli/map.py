@@ -11,7 +11,7 @@ import xarray as xr
 from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.failures import complain
-from torsional.cli.places import chosen_places, speed_ratios, together, without_empty
+from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.progress import progress
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
@@ -62,8 +62,7 @@ def reduced(full: xr.Dataset, model: Model) -> xr.Dataset:
 
 
 def _one_gear(full: xr.Dataset, model: Model) -> xr.Dataset:
-    ratios = speed_ratios(model, str(full.gear.values[0]), full.node.values.tolist())
-    told = together(full.angle, full.torque_order, ratios)
+    told = together(full.angle, full.torque_order)
     return xr.Dataset({name: values.transpose("gear", "torque", "speed", ...) for name, values in told.items()})
 
 

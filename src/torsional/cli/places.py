@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError, nearest
@@ -42,19 +41,16 @@ def _known(asked: Sequence[str], known: Sequence[str], option: str) -> list[str]
     return list(asked)
 
 
-def together(angle: xr.DataArray, torque: xr.DataArray, ratio: Sequence[float]) -> dict[str, xr.DataArray]:
+def together(angle: xr.DataArray, torque: xr.DataArray) -> dict[str, xr.DataArray]:
     """Half peak-to-peak swings of accelerations and torques, phases kept, beside their bounds, and irregularities.
 
-    ``angle`` (…, node) and ``torque`` (…, element) over orders; ``ratio`` the mean speed of each node over the
-    engine's, since a node's irregularity counts its own mean speed.
+    ``angle`` (…, node) and ``torque`` (…, element) over orders.
     """
     told: dict[str, xr.DataArray] = {}
     if angle.sizes["node"]:
         moved = acceleration(angle)
         told |= {"acceleration_swing": swing(moved), "acceleration_bound": bound(moved)}
-        own = xr.DataArray(np.abs(ratio), dims="node", coords={"node": angle.node})
-        uneven = irregularity(angle)
-        told["irregularity"] = (uneven / own.where(own > 0)).assign_attrs(uneven.attrs)
+        told["irregularity"] = irregularity(angle)
     if torque.sizes["element"]:
         told |= {"torque_swing": swing(torque), "torque_bound": bound(torque)}
     return told
@@ -64,9 +60,3 @@ def without_empty(data: xr.Dataset) -> xr.Dataset:
     """The result without the kind of place of which none is looked at."""
     return data.drop_dims([dim for dim in ("node", "element") if data.sizes.get(dim) == 0])
 
-
-def speed_ratios(model: Model, gear: str, nodes: Sequence[str]) -> list[float]:
-    """Mean speed of each node over the engine's."""
-    powertrain = model.powertrain(gear or None)
-    own = powertrain.speed_ratio(model.landmarks.crankshaft) if model.landmarks.crankshaft else 1.0
-    return [powertrain.speed_ratio(node) / own for node in nodes]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,19 +12,15 @@ from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
 from torsional.cli.modes import in_gear
-from torsional.cli.places import chosen_places, speed_ratios, together, without_empty
+from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
-from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration
 from torsional.solvers.campbell import full_load
-from torsional.solvers.equilibrium import linearize
-from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.map import HALF_ORDERS
-from torsional.solvers.operating import mean_state
-from torsional.system import System, assemble
+from torsional.solvers.run_up import run_up_response
 from torsional.units import show
 
 if TYPE_CHECKING:
@@ -64,35 +60,9 @@ def run(
 def response(
     model: Model, gear: str, speeds: Array, torques: Array, orders: Array, nodes: Sequence[str], elements: Sequence[str]
 ) -> xr.Dataset:
-    """What `harmonic_response` finds at each speed with the stiffnesses of its own mean torque [Nm].
-
-    ``angle`` and ``torque`` over (speed, order), complex 0-peak; of all orders `together` ``acceleration_swing``,
-    ``irregularity`` and ``torque_swing`` over speed, half peak-to-peak with phases kept, beside their bounds.
-    """
-    if model.engine is None:
-        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
-    parts = list(_parts(model, assemble(model.powertrain(gear or None)), speeds, torques, orders))
-    found = (
-        xr.concat(parts, "speed", combine_attrs="override")
-        .sortby("speed")
-        .sel(node=list(nodes), element=list(elements))
-    )
-    told = together(found.angle, found.torque, speed_ratios(model, gear, nodes))
-    mean = xr.Variable("speed", torques, {"units": "Nm", "long_name": "mean torque", "quantity": "torque"})
-    named = found.assign(told).assign(mean_torque=mean).assign_attrs(model=model.name, model_hash=model.hash)
-    return without_empty(named)
-
-
-def _parts(model: Model, system: System, speeds: Array, torques: Array, orders: Array) -> Iterator[xr.Dataset]:
-    """Responses at speeds whose equilibria have the same stiffnesses, solved together."""
-    engine, throws = model.engine, model.landmarks.throws
-    assert engine is not None
-    state = mean_state(model, system, torques)
-    _, group = np.unique(state.stiffness, axis=0, return_inverse=True)
-    for number in range(int(group.max()) + 1):
-        at = np.flatnonzero(group.ravel() == number)
-        excitation = engine.excitation(throws, speeds[at], torques[at], orders)
-        yield harmonic_response(linearize(system, state.at(int(at[0]))), excitation)
+    """`run_up_response` at some places, and of all orders `together` the swings over speed beside their bounds."""
+    found = run_up_response(model, speeds, torques, gear or None, orders).sel(node=list(nodes), element=list(elements))
+    return without_empty(found.drop_vars(("twist", "mean_twist")).assign(together(found.angle, found.torque)))
 
 
 def tables(data: xr.Dataset, title: str) -> list[Table]:

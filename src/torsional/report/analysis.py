@@ -15,8 +15,8 @@ from torsional.quantities import acceleration, irregularity, named_modes, swing
 from torsional.report.labels import labels
 from torsional.results import dataset
 from torsional.solvers.campbell import campbell, full_load
-from torsional.solvers.full_load import full_load_response
 from torsional.solvers.map import response_map
+from torsional.solvers.run_up import full_load_response
 
 Progress = Callable[[int, int], None]
 

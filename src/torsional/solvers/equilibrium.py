@@ -90,8 +90,8 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
     shape = np.broadcast_shapes(*(np.shape(value) for value in torques.values()))
     stiffness = np.array([_forces(system, a)[1] for a in angle])
     names = system.connections.names
-    shaped = (v.reshape(*shape, carrying.size) for v in (torque, angle, stiffness))
-    return OperatingPoint(names, *shaped, laws=system.connections.laws)
+    torque, angle, stiffness = (v.reshape(*shape, carrying.size) for v in (torque, angle, stiffness))
+    return OperatingPoint(names, torque, angle, stiffness, system.connections.laws)
 
 
 def linearize(system: System, point: OperatingPoint) -> System:

@@ -66,7 +66,7 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
         analysis="harmonic response",
         amplitude="complex 0-peak",
         system_hash=system.hash,
-    )
+    ).assign_coords(speed_ratio=("node", system.speed_ratio))
 
 
 def response(

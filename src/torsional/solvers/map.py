@@ -51,7 +51,7 @@ def response_map(
     for done, gear in enumerate(names, 1):
         cells.append(_one_gear(model, gear, speeds, torques, n, loads, _places(model, nodes, elements)))
         progress(done, len(names))
-    angle, twist, travel, status = (np.stack(parts) for parts in zip(*cells, strict=True))
+    angle, twist, travel, status, ratio = (np.stack(parts) for parts in zip(*cells, strict=True))
     chosen = _places(model, nodes, elements)
     grid = ("gear", "torque", "speed", "order")
     return dataset(
@@ -74,7 +74,7 @@ def response_map(
         model=model.name,
         model_hash=model.hash,
         amplitude="complex 0-peak",
-    )
+    ).assign_coords(speed_ratio=(("gear", "node"), ratio))
 
 
 def _places(model: Model, nodes: Sequence[str] | None, elements: Sequence[str] | None) -> tuple[list[str], list[str]]:
@@ -99,7 +99,7 @@ def _one_gear(
     orders: Array,
     loads: ComplexArray,
     places: tuple[list[str], list[str]],
-) -> tuple[ComplexArray, ComplexArray, Array, StatusArray]:
+) -> tuple[ComplexArray, ComplexArray, Array, StatusArray, Array]:
     system = assemble(model.powertrain(gear))
     state = mean_state(model, system, torques)
     values = {"stiffness": state.stiffness}
@@ -112,7 +112,7 @@ def _one_gear(
     part = _picked(system, twisted)
     told = {"stiffness": state.stiffness[:, twisted]}
     torque = element_torques(part, omega, turning, q, told).reshape(shape)
-    return angle, torque, state.angle[:, twisted], status.reshape(shape[:-1])
+    return angle, torque, state.angle[:, twisted], status.reshape(shape[:-1]), system.speed_ratio[nodes]
 
 
 def _elements(system: System, names: list[str]) -> list[int]:
