@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from torsional.numerics.arrays import Array
-from torsional.numerics.elimination_kernel import weight_sum
+from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.numerics.elimination_assembly import weight_sum
 
 Pair = tuple[float, float]
 Quad = tuple[float, float, float, float]
@@ -25,7 +24,7 @@ PIVOT_LIMIT = 1e-27
 """Of a pivot this small against its column nothing but rounding is left; 1e-4 Nm/rad beside 1e9 are far above it."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _sum(a: Pair, b: Pair) -> Pair:
     s = a[0] + b[0]
     v = s - a[0]
@@ -34,14 +33,14 @@ def _sum(a: Pair, b: Pair) -> Pair:
     return high, e - (high - s)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _split(a: float) -> Pair:
     c = 134217729.0 * a
     high = c - (c - a)
     return high, a - high
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _product(a: Pair, b: Pair) -> Pair:
     p = a[0] * b[0]
     (ah, al), (bh, bl) = _split(a[0]), _split(b[0])
@@ -50,7 +49,7 @@ def _product(a: Pair, b: Pair) -> Pair:
     return high, e - (high - p)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _inverse(a: Pair) -> Pair:
     """One Newton step from the double's reciprocal."""
     q = 1.0 / a[0]
@@ -58,13 +57,13 @@ def _inverse(a: Pair) -> Pair:
     return _sum((q, 0.0), (q * r[0], 0.0))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _add(a: Quad, b: Quad) -> Quad:
     re, im = _sum((a[0], a[1]), (b[0], b[1])), _sum((a[2], a[3]), (b[2], b[3]))
     return re[0], re[1], im[0], im[1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _multiply(a: Quad, b: Quad) -> Quad:
     ar, ai, br, bi = (a[0], a[1]), (a[2], a[3]), (b[0], b[1]), (b[2], b[3])
     re = _sum(_product(ar, br), _product((-ai[0], -ai[1]), bi))
@@ -72,7 +71,7 @@ def _multiply(a: Quad, b: Quad) -> Quad:
     return re[0], re[1], im[0], im[1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _reciprocal(a: Quad) -> Quad:
     ar, ai = (a[0], a[1]), (a[2], a[3])
     q = _inverse(_sum(_product(ar, ar), _product(ai, ai)))
@@ -80,23 +79,23 @@ def _reciprocal(a: Quad) -> Quad:
     return re[0], re[1], -im[0], -im[1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _scale(a: Quad, factor: float) -> Quad:
     re, im = _product((a[0], a[1]), (factor, 0.0)), _product((a[2], a[3]), (factor, 0.0))
     return re[0], re[1], im[0], im[1]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _quad(row: Array) -> Quad:
     return row[0], row[1], row[2], row[3]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _put(row: Array, a: Quad) -> None:
     row[0], row[1], row[2], row[3] = a
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _stamp(Z: Array, weights: Array, value: Quad) -> None:
     """Add z w wᵀ, the diagonal as row sum less couplings so that a rigid rotation meets exactly no stiffness."""
     total = weight_sum(weights)
@@ -126,13 +125,28 @@ def factor_values(k: Array, h: Array, c: Array, s: Array, J: Array, omega: float
     return z
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
+def _size(a: Array) -> float:
+    return abs(a[0]) + abs(a[2])
+
+
+@njit(error_model="numpy")
+def _largest(Z: Array, column: int, first: int, end: int) -> int:
+    """The row with the largest entry of a column; one that is not a number comes first."""
+    best = first
+    for i in range(first + 1, end):
+        if not _size(Z[i, column]) <= _size(Z[best, column]):
+            best = i
+    return best
+
+
+@njit(error_model="numpy")
 def _reduce(Z: Array, n: int) -> bool:
-    """Gaussian elimination with row pivoting of the columns 0 … n of Z; False where only rounding is left of a pivot."""
-    scale = np.array([np.max(np.abs(Z[:, p, 0]) + np.abs(Z[:, p, 2])) for p in range(n)])
+    """Gaussian elimination with row pivoting of columns 0 … n of Z; False where only rounding is left of a pivot."""
+    scale = [_size(Z[_largest(Z, p, 0, n), p]) for p in range(n)]
     for p in range(n):
-        best = p + np.argmax(np.abs(Z[p:, p, 0]) + np.abs(Z[p:, p, 2]))
-        if not np.abs(Z[best, p, 0]) + np.abs(Z[best, p, 2]) > PIVOT_LIMIT * scale[p]:
+        best = _largest(Z, p, p, n)
+        if not _size(Z[best, p]) > PIVOT_LIMIT * scale[p]:
             return False
         for j in range(p, Z.shape[1]):
             for part in range(4):
@@ -146,7 +160,7 @@ def _reduce(Z: Array, n: int) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _substitute(Z: Array, n: int) -> None:
     """Back substitution; the solutions replace the right-hand sides."""
     for right in range(n, Z.shape[1]):
@@ -157,7 +171,7 @@ def _substitute(Z: Array, n: int) -> None:
             _put(Z[i, right], _multiply(total, _reciprocal(_quad(Z[i, i]))))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def _magnification(weights: Array, z: Array, x: Array, load: float) -> float:
     """Largest sum of the magnitudes of all forces at one node, over the largest load."""
     forces = np.zeros(weights.shape[1])
@@ -165,18 +179,21 @@ def _magnification(weights: Array, z: Array, x: Array, load: float) -> float:
         combined = (0.0, 0.0, 0.0, 0.0)
         for i in range(weights.shape[1]):
             combined = _add(combined, _scale(_quad(x[i]), weights[f, i]))
-        force = np.hypot(z[f, 0], z[f, 2]) * np.hypot(combined[0], combined[2])
-        forces += np.abs(weights[f]) * force
-    return np.max(forces) / load if load > 0.0 else 0.0
+        force = (abs(z[f, 0]) + abs(z[f, 2])) * (abs(combined[0]) + abs(combined[2]))
+        for i in range(weights.shape[1]):
+            forces[i] += abs(weights[f, i]) * force
+    largest = 0.0
+    for force in forces:
+        largest = max(largest, force)
+    return largest / load if load > 0.0 else 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def solve_dense(
-    weights: Array, z: Array, nodes: NDArray[np.int64], loads: NDArray[np.complex128], x: NDArray[np.complex128]
-) -> bool:
+def solve_dense(weights: Array, z: Array, nodes: IntArray, loads: ComplexArray, x: ComplexArray) -> bool:
     """Solve Σ z w wᵀ x = b for the right-hand sides ``loads`` (rights, nodes) into x (rights, n).
 
-    False where the system is singular, or so near to it that the forces within exceed the loads a trillion times.
+    ``weights`` are (factors, n), z (factors, 4) as ``factor_values`` gives them.  False where the system is singular,
+    or so near to it that the forces within exceed the loads a trillion times.
     """
     n, rights = weights.shape[1], loads.shape[0]
     Z = np.zeros((n, n + rights, 4))
@@ -190,40 +207,11 @@ def solve_dense(
     _substitute(Z, n)
     sound = True
     for right in range(rights):
-        x[right] = Z[:, n + right, 0] + 1j * Z[:, n + right, 2]
-        grown = _magnification(weights, z, Z[:, n + right], np.max(np.abs(loads[right])))
-        sound = sound and grown < MAGNIFICATION_LIMIT and bool(np.all(np.isfinite(x[right].real + x[right].imag)))
+        load, finite = 0.0, 0.0
+        for i in range(nodes.size):
+            load = max(load, abs(loads[right, i].real) + abs(loads[right, i].imag))
+        for i in range(n):
+            x[right, i] = complex(Z[i, n + right, 0], Z[i, n + right, 2])
+            finite += 0.0 * (Z[i, n + right, 0] + Z[i, n + right, 2])
+        sound = sound and finite == 0.0 and _magnification(weights, z, Z[:, n + right], load) < MAGNIFICATION_LIMIT
     return sound
-
-
-@njit(cache=True, error_model="numpy")
-def _own(table: Array, design: int) -> Array:
-    """A table holds one row for each design or one for all."""
-    return table[min(design, table.shape[0] - 1)]
-
-
-@njit(cache=True, error_model="numpy")
-def redo(
-    cases: NDArray[np.int64],
-    values: tuple[Array, Array, Array, Array, Array],
-    weights: tuple[Array, Array],
-    frequencies: tuple[Array, Array],
-    nodes: NDArray[np.int64],
-    loads: NDArray[np.complex128],
-    outputs: NDArray[np.int64],
-    x: NDArray[np.complex128],
-    sound: NDArray[np.bool_],
-) -> None:
-    """Solve the listed cases (design × number of frequencies + frequency) of x (designs, rights, outputs, frequencies)."""
-    omega, speed = frequencies
-    rights, n = x.shape[1], weights[0].shape[2]
-    for q in range(cases.size):
-        d, f = cases[q] // omega.size, cases[q] % omega.size
-        k, h, c, s, J = [_own(table, d) for table in values]
-        z = factor_values(k, h, c, s, J, omega[f], speed[f])
-        w = np.concatenate((_own(weights[0], d), _own(weights[1], d)))
-        full = np.zeros((rights, n), dtype=np.complex128)
-        sound[q] = solve_dense(w, z, nodes, loads[min(d, loads.shape[0] - 1), min(f, loads.shape[1] - 1)], full)
-        for right in range(rights):
-            for o in range(outputs.size):
-                x[d, right, o, f] = full[right, outputs[o]] if sound[q] else complex(np.nan, np.nan)

@@ -11,110 +11,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from torsional.numerics import elimination_lanes as steps
-from torsional.numerics import elimination_tape as tape
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.lanes import LANES
+from torsional.numerics.elimination_assembly import assemble, fill, row_of
+from torsional.numerics.elimination_lanes import GROWTH_LIMIT, execute
+from torsional.numerics.elimination_tape import GUARD, OMEGA, OMEGA_SQUARED, SPEED_SQUARED
+from torsional.numerics.lanes import LANES as L
 
 _U = np.uint64
-L = LANES
-_OMEGA, _OMEGA_SQUARED, _SPEED_SQUARED, _GUARD = tape.OMEGA, tape.OMEGA_SQUARED, tape.SPEED_SQUARED, tape.GUARD
-
-
-@njit(cache=True, error_model="numpy")
-def weight_sum(weights: Array) -> float:
-    """Sum of a factor's weights; what rounding alone has left over counts as zero."""
-    total, size = 0.0, 0.0
-    for weight in weights:
-        total += weight
-        size += abs(weight)
-    return 0.0 if abs(total) <= 4e-16 * weights.size * size else total
-
-
-@njit(cache=True, error_model="numpy")
-def _coefficient(weights: Array, total: float, i: int, j: int) -> float:
-    """What a factor of value 1 adds to a slot: itself, to a row sum or to a coupling."""
-    if i < 0:
-        return 1.0
-    return weights[i] * total if j < 0 else -weights[i] * weights[j]
-
-
-@njit(cache=True, error_model="numpy")
-def coefficients(weights: Array, terms: IntArray) -> Array:
-    """The coefficient of each term, one row for each set of weights (sets, factors, n)."""
-    found = np.empty((weights.shape[0], terms.shape[0]))
-    for d in range(weights.shape[0]):
-        for q in range(terms.shape[0]):
-            f = terms[q, 0]
-            found[d, q] = _coefficient(weights[d, f], weight_sum(weights[d, f]), terms[q, 2], terms[q, 3])
-    return found
-
-
-@njit(cache=True, error_model="numpy")
-def weights_of_rows(weights: Array, rows: IntArray) -> Array:
-    """The weights that lanes need, one row for each set of weights."""
-    found = np.empty((weights.shape[0], rows.shape[0]))
-    for d in range(weights.shape[0]):
-        for q in range(rows.shape[0]):
-            own, node = weights[d, rows[q, 1]], rows[q, 2]
-            found[d, q] = 0.0 if node < -1 else weight_sum(own) if node < 0 else own[node]
-    return found
-
-
-@njit(cache=True, error_model="numpy")
-def _row(table: Array, design: int) -> int:
-    """A table holds one row for each design or one for all."""
-    return min(design, table.shape[0] - 1)
-
-
-@njit(cache=True, error_model="numpy")
-def gather_connections(
-    slots: Array, terms: IntArray, shares: Array, values: tuple[Array, Array, Array, Array]
-) -> None:
-    """Add each term's k, ηk, c and s to its slot (designs, slots, 5)."""
-    stiffness, loss, damping, centrifugal = values
-    for d in range(slots.shape[0]):
-        k, h = stiffness[_row(stiffness, d)], loss[_row(loss, d)]
-        c, s = damping[_row(damping, d)], centrifugal[_row(centrifugal, d)]
-        g = shares[_row(shares, d)]
-        for q in range(terms.shape[0]):
-            f, slot = terms[q, 0], slots[d, terms[q, 1]]
-            slot[0] += g[q] * k[f]
-            slot[1] += g[q] * (k[f] * h[f])
-            slot[2] += g[q] * c[f]
-            slot[3] += g[q] * s[f]
-
-
-@njit(cache=True, error_model="numpy")
-def gather_masses(slots: Array, terms: IntArray, shares: Array, inertia: Array) -> None:
-    """Add each term's J to its slot."""
-    for d in range(slots.shape[0]):
-        J, g = inertia[_row(inertia, d)], shares[_row(shares, d)]
-        for q in range(terms.shape[0]):
-            slots[d, terms[q, 1], 4] += g[q] * J[terms[q, 0]]
-
-
-@njit(cache=True, error_model="numpy")
-def _assemble(w: Array, rows: IntArray, sums: int, slots: Array, design: int, lo: int, hi: int) -> None:
-    """re = k + Ω² s − ω² J and im = ηk + ω c in lanes lo … hi; absent terms are skipped, which changes no value.
-
-    The first ``sums`` slots are row sums, whose squared size is kept too.
-    """
-    for q in range(rows.size):
-        row, k, h = rows[q], slots[design, q, 0], slots[design, q, 1]
-        c, s, m = slots[design, q, 2], slots[design, q, 3], slots[design, q, 4]
-        if m != 0.0:
-            steps.fill_line(w, row, lo, hi, k, -m, _OMEGA_SQUARED)
-        else:
-            steps.fill(w, row, lo, hi, k)
-        if s != 0.0:
-            steps.add_line(w, row, lo, hi, s, _SPEED_SQUARED)
-        if c != 0.0:
-            steps.fill_line(w, row + L, lo, hi, h, c, _OMEGA)
-        else:
-            steps.fill(w, row + L, lo, hi, h)
-        if q < sums:
-            steps.measure(w, row, lo, hi)
 
 
 @njit(cache=True, error_model="numpy")
@@ -122,9 +25,9 @@ def _tune(w: Array, omega: Array, speed: Array, frequency: int, lo: int, hi: int
     """Set ω, ω² and Ω² of lanes lo … hi; ``step`` 0 repeats one frequency."""
     for lane in range(hi - lo):
         at = frequency + step * lane
-        w[_OMEGA + lo + lane] = omega[at]
-        w[_OMEGA_SQUARED + lo + lane] = omega[at] * omega[at]
-        w[_SPEED_SQUARED + lo + lane] = speed[at] * speed[at]
+        w[OMEGA + lo + lane] = omega[at]
+        w[OMEGA_SQUARED + lo + lane] = omega[at] * omega[at]
+        w[SPEED_SQUARED + lo + lane] = speed[at] * speed[at]
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,19 +64,19 @@ def _segment(first: int, lane: int, frequencies: int, cases: int) -> tuple[int, 
 
 @njit(cache=True, error_model="numpy")
 def _prepare(
-    w: Array, rows: IntArray, sums: int, slots: Array, weight_rows: IntArray, weights: Array, omega: Array, speed: Array,
-    first: int, cases: int,
+    w: Array, rows: IntArray, sums: int, slots: Array, weight_rows: IntArray, weights: Array,
+    omega: Array, speed: Array, first: int, cases: int,
 ) -> None:  # fmt: skip
     """Fill the block that starts at case ``first`` with what its designs and frequencies make of each slot."""
     lane = 0
     while lane < L:
         design, frequency, step, stop = _segment(first, lane, omega.size, cases)
         _tune(w, omega, speed, frequency, lane, stop, step)
-        _assemble(w, rows, sums, slots, design, lane, stop)
+        assemble(w, rows, sums, slots, design, lane, stop)
         for q in range(weight_rows.shape[0]):
-            steps.fill(w, weight_rows[q, 0], lane, stop, weights[_row(weights, design), q])
+            fill(w, weight_rows[q, 0], lane, stop, weights[row_of(weights, design), q])
         lane = stop
-    steps.fill(w, _GUARD, 0, L, 0.0)
+    fill(w, GUARD, 0, L, 0.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -208,7 +111,7 @@ def _judge(w: Array, flagged: NDArray[np.bool_], first: int) -> int:
     """Flag the cases of a block whose guard has grown too large or is not a number."""
     count = 0
     for lane in range(min(L, flagged.size - first)):
-        bad = not w[_GUARD + lane] < steps.GROWTH_LIMIT
+        bad = not w[GUARD + lane] < GROWTH_LIMIT
         flagged[first + lane] = bad
         count += bad
     return count
@@ -248,14 +151,14 @@ def respond(
         _prepare(w, slot_row, nodes, slots, weight_rows, weights, omega, speed, first, flagged.size)
         if rights == 1:
             _transport(w, load_rows, loads, strides, 0, omega.size, first, flagged.size)
-            steps.execute(w, fused)
+            execute(w, fused)
         else:
-            steps.execute(w, program)
+            execute(w, program)
         count += _judge(w, flagged, first)
         for right in range(rights):
             if rights > 1:
                 _transport(w, load_rows, loads, strides, right, omega.size, first, flagged.size)
-                steps.execute(w, forward)
-            steps.execute(w, backward if rights > 1 else fused_backward)
+                execute(w, forward)
+            execute(w, backward if rights > 1 else fused_backward)
             _deliver(w, output_rows, x, right, rights, omega.size, first, flagged.size)
     return count

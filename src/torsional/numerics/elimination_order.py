@@ -20,9 +20,13 @@ class Removal:
 
     node: int
     neighbours: frozenset[int]
-    spread: tuple[tuple[int, frozenset[int]], ...]  # connections spread over couplings beforehand, and on which nodes
     whole: int  # the connection that stays whole and lives on between the neighbours, or −1
-    alone: bool  # nothing but that connection joins the node to others
+    alone: bool  # nothing but whole connections joins the node to others
+    merged: tuple[tuple[int, frozenset[int]], ...]  # others turned away from the node beforehand: on whose nodes
+
+    def absorbed(self) -> list[tuple[int, int]]:
+        """The turned connections of which a single node is left: (connection, node)."""
+        return [(g, next(iter(nodes - {self.node}))) for g, nodes in self.merged if len(nodes) == 2]
 
 
 @dataclass
@@ -34,34 +38,41 @@ class _Graph:
     removals: list[Removal] = field(default_factory=list)
 
     def neighbours(self, node: int) -> set[int]:
-        on_it = (support for support in self.whole if node in support)
-        return self.coupled[node].union(*on_it) - {node}
+        return self.coupled[node].union(*(self.whole[f] for f in self.on(node))) - {node}
+
+    def on(self, node: int) -> list[int]:
+        return [f for f, support in enumerate(self.whole) if node in support]
 
     def cost(self, node: int) -> tuple[int, int, int]:
-        """What to keep small: connections that cannot stay whole, then neighbours; the lowest index among equals."""
-        lost = sum(node in support for support in self.whole) - 1
-        return max(0, lost), len(self.neighbours(node)), node
+        """What to keep small: neighbours, whole connections; the lowest index among equals."""
+        return len(self.neighbours(node)), len(self.on(node)), node
 
     def join(self, nodes: Iterable[int]) -> None:
         for i, j in combinations(nodes, 2):
             self.coupled[i].add(j)
             self.coupled[j].add(i)
 
-    def remove(self, node: int) -> None:
-        neighbours = frozenset(self.neighbours(node))
-        whole, *others = [f for f, support in enumerate(self.whole) if node in support] or [-1]
-        spread = tuple((f, frozenset(self.whole[f])) for f in others)
-        for f in others:
-            self.join(self.whole[f])
+    def keep(self, f: int, nodes: Iterable[int]) -> None:
+        """Leave a connection on these nodes; on a single one it is a row sum."""
+        self.whole[f] = set(nodes)
+        if len(self.whole[f]) == 1:
             self.whole[f] = set()
-        alone = whole >= 0 and not self.coupled[node]
+
+    def remove(self, node: int) -> None:
+        neighbours, (f, *others) = frozenset(self.neighbours(node)), self.on(node) or [-1]
+        merged = []
+        for g in others:
+            self.whole[f] |= self.whole[g]
+            merged += [(g, frozenset(self.whole[f]))]
+            self.keep(g, self.whole[f] - {node})
+        alone = f >= 0 and not self.coupled[node]
         if not alone:
             self.join(neighbours)
-        if whole >= 0:
-            self.whole[whole] = set(neighbours) if len(neighbours) > 1 else set()
+        if f >= 0:
+            self.keep(f, neighbours)
         for other in neighbours:
             self.coupled[other].discard(node)
-        self.removals.append(Removal(node, neighbours, spread, whole, alone))
+        self.removals.append(Removal(node, neighbours, f, alone, tuple(merged)))
 
 
 def supports(pattern: NDArray[np.bool_]) -> list[set[int]]:
@@ -78,8 +89,8 @@ def removals(
 ) -> list[Removal]:
     """Fewest neighbours first, the lowest index among equals; the nodes of ``keep_last`` after all others.
 
-    >>> [removal.node for removal in removals([{0, 1}, {1, 2}], [], 3)], [r.node for r in removals([{0, 1}], [], 2, [0])]
-    ([0, 1, 2], [1, 0])
+    >>> [[r.node for r in removals([{0, 1}, {1, 2}], [], 3, keep_last)] for keep_last in ([], [0])]
+    [[0, 1, 2], [2, 1, 0]]
     """
     graph = _Graph([set() for _ in range(n)], [set(s) if len(s) > 2 else set() for s in connections])
     for support in (*(s for s in connections if len(s) <= 2), *masses):

@@ -30,7 +30,7 @@ def build_route(tape: Tape, loaded: Sequence[int], outputs: Sequence[int]) -> Ro
     forward = [loads.forward(removal, column) for removal, column, _ in ways]
     fused = [step for own, (_, _, steps) in zip(forward, ways, strict=True) for step in _fused(list(steps), own)]
     needed, backward, fused_backward = set(outputs), [], []
-    for removal, column, steps in ways:
+    for removal, column, _ in ways:
         needed.update(column if removal.node in needed else ())
     for removal, column, steps in reversed(ways):
         if removal.node in needed:
@@ -57,7 +57,8 @@ class _Loads:
 
     def forward(self, removal: Removal, column: Sequence[int]) -> list[Step]:
         """Hand on what has come to a node: b_j += t_j b_i."""
-        steps = [step for f, support in removal.spread for step in self._untwist(f, sorted(support))]
+        steps = [step for g, _ in removal.merged for step in self._turn(removal, g)]
+        steps += [step for g, node in removal.absorbed() for step in self._untwist(g, node)]
         if removal.whole >= 0:
             return steps + self._forward_whole(removal, column)
         if removal.node not in self.filled:
@@ -79,21 +80,32 @@ class _Loads:
         f, node, rows = removal.whole, removal.node, self.rows
         if node not in self.filled and f not in self.twisted:
             return []
-        steps = self._clear(node) + ([] if f in self.twisted else [(Op.CLEAR, rows.twists[f])])
-        self.twisted.add(f)
+        steps = self._clear(node) + self._clear_twist(f)
         if not removal.alone:
             first = rows.aside[node] + FIRST_TRANSFER
             steps += self._hand_on(node, column, [first + COMPLEX * i for i in range(len(column))])
         own = rows.loads[node], rows.twists[f], rows.weights[f, node], rows.aside[node], rows.columns[node]
-        return [*steps, (Op.TWIST_WHOLE, *own), *(self._untwist(f, column) if len(column) == 1 else [])]
+        return [*steps, (Op.TWIST_WHOLE, *own), *(self._untwist(f, column[0]) if len(column) == 1 else [])]
 
-    def _untwist(self, f: int, support: Sequence[int]) -> list[Step]:
-        """A connection that is whole no longer leaves its twist to the nodes as loads."""
+    def _turn(self, removal: Removal, g: int) -> list[Step]:
+        """The twists of two connections turn with them."""
+        f, rows = removal.whole, self.rows
+        if not self.twisted & {f, g}:
+            return []
+        steps = self._clear_twist(f) + self._clear_twist(g)
+        return [*steps, (Op.TURN, rows.twists[f], rows.twists[g], rows.turns[g, removal.node])]
+
+    def _untwist(self, f: int, node: int) -> list[Step]:
+        """A connection that is left on a single node leaves its twist as a load."""
         if f not in self.twisted:
             return []
-        rows, twist = self.rows, self.rows.twists[f]
-        steps = [step for j in support for step in self._clear(j)]
-        return steps + [(Op.LOAD_WHOLE, rows.loads[j], twist, rows.whole[f], rows.weights[f, j]) for j in support]
+        own = self.rows.twists[f], self.rows.whole[f], self.rows.weights[f, node]
+        return [*self._clear(node), (Op.LOAD_WHOLE, self.rows.loads[node], *own)]
+
+    def _clear_twist(self, f: int) -> list[Step]:
+        new = f not in self.twisted
+        self.twisted.add(f)
+        return [(Op.CLEAR, self.rows.twists[f])] if new else []
 
     def _clear(self, node: int) -> list[Step]:
         new = node not in self.filled

@@ -7,7 +7,7 @@ then the connections kept whole (value, sum of weights, weights), then loads.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum, auto
 from itertools import combinations
@@ -48,12 +48,10 @@ class Op(IntEnum):
     PASS_WHOLE = auto()
     SOFTEN_WHOLE = auto()
     ABSORB_WHOLE = auto()
-    SPREAD_SUM = auto()
-    SPREAD_COUPLING = auto()
+    MERGE_WHOLE = auto()
+    TURN = auto()
     TWIST_WHOLE = auto()
     LOAD_WHOLE = auto()
-    CHECK = auto()
-    CLEAR_REAL = auto()
 
 
 Step = tuple[int, ...]
@@ -68,7 +66,7 @@ class Layout:
     couplings: dict[frozenset[int], int]
     whole: dict[int, int]  # by connection: value, sum of weights
     weights: dict[tuple[int, int], int]  # (connection, node)
-    floors: dict[frozenset[int], int]  # of each coupling that a connection is spread over
+    turns: dict[tuple[int, int], int]  # of a connection turned away from a node: the turn's four coefficients
     aside: dict[int, int]  # of a node on a whole connection: 1/s₀, z w_i / s, then t_j of its other couplings
     loads: dict[int, int]  # of each node; its solution replaces it
     twists: dict[int, int]  # of each whole connection: what its w·x is counted from
@@ -83,9 +81,9 @@ class Tape:
     columns: tuple[tuple[int, ...], ...]  # the neighbours of each removal, in the order of their own
     layout: Layout
     slot_row: IntArray  # (slots,) offset of each value: row sums, couplings, whole connections
-    connection_terms: IntArray  # (terms, 4): connection, slot, node i, node j; j = −1: row sum; i = −1: the value itself
+    connection_terms: IntArray  # (terms, 4): connection, slot, nodes i, j; j = −1: row sum; i = −1: the value
     mass_terms: IntArray  # (terms, 4): the same for the masses
-    weight_rows: IntArray  # (rows, 3): offset, connection, node (−1: the sum; −2: nothing) of the weights that lanes need
+    weight_rows: IntArray  # (rows, 3): offset, connection, node (−1: the sum; −2: nothing) of weights
     steps: tuple[tuple[Step, ...], ...]  # the operations of each removal
     program: IntArray  # (operations, 1 + OPERANDS): all of them
 
@@ -106,8 +104,6 @@ def build_tape(
         for offset, i, j in ([(rows.whole[f], -1, -1)] if f in rows.whole else _entries(support, rows))
     ]
     steps = tuple(tuple(_steps(removal, column, rows)) for removal, column in zip(order, columns, strict=True))
-    clear: list[Step] = [(Op.CLEAR_REAL, floor) for floor in rows.floors.values()]
-    steps = ((*clear, *steps[0]), *steps[1:])
     return Tape(
         removals=order,
         columns=columns,
@@ -121,9 +117,7 @@ def build_tape(
     )
 
 
-def _layout(
-    order: Sequence[Removal], columns: Sequence[Sequence[int]], connections: Sequence[set[int]]
-) -> Layout:
+def _layout(order: Sequence[Removal], columns: Sequence[Sequence[int]], connections: Sequence[set[int]]) -> Layout:
     """Lay out the workspace: each part behind the one before."""
     rows = Layout({}, {}, {}, {}, {}, {}, {}, {}, 0)
     wholes = [f for f, support in enumerate(connections) if len(support) > 2]
@@ -132,12 +126,12 @@ def _layout(
         parts += [(rows.columns, removal.node, FIRST_COUPLING)]
         parts += [(rows.couplings, frozenset((removal.node, j)), COMPLEX) for j in column]
     for f in wholes:
-        others = (removal.neighbours for removal in order if removal.whole == f)
+        others = [removal.neighbours for removal in order if removal.whole == f]
+        others += [nodes for removal in order for g, nodes in removal.merged if f in (g, removal.whole)]
         parts += [(rows.whole, f, WEIGHT_SUM + COMPLEX)]
         parts += [(rows.weights, (f, node), COMPLEX) for node in sorted(connections[f].union(*others))]
-    for pair in {frozenset(p): None for r in order for _, s in r.spread for p in combinations(sorted(s), 2)}:
-        parts += [(rows.floors, pair, LANES)]
     for removal in order:
+        parts += [(rows.turns, (g, removal.node), 4 * COMPLEX) for g, _ in removal.merged]
         if removal.whole >= 0:
             parts += [(rows.aside, removal.node, FIRST_TRANSFER + COMPLEX * len(removal.neighbours))]
     parts += [(rows.loads, removal.node, COMPLEX) for removal in order] + [(rows.twists, f, COMPLEX) for f in wholes]
@@ -172,9 +166,7 @@ def _entries(support: set[int], rows: Layout) -> list[tuple[int, int, int]]:
 def _steps(removal: Removal, column: Sequence[int], rows: Layout) -> list[Step]:
     """Take out one node."""
     own = rows.columns[removal.node]
-    steps = [step for f, support in removal.spread for step in _spread(f, sorted(support), rows)]
-    pairs = [frozenset((removal.node, j)) for j in column]
-    steps += [(Op.CHECK, rows.couplings[pair], rows.floors[pair]) for pair in pairs if pair in rows.floors]
+    steps = [step for g, nodes in removal.merged for step in _merge(removal, g, nodes, rows)]
     if removal.whole >= 0:
         return steps + _whole_star(removal, column, rows)
     if not column:
@@ -184,14 +176,15 @@ def _steps(removal: Removal, column: Sequence[int], rows: Layout) -> list[Step]:
     return [*steps, *_star(removal, column, rows), (Op.COPY, own, OPEN_PIVOT)]
 
 
-def _spread(f: int, support: Sequence[int], rows: Layout) -> list[Step]:
-    """Turn a whole connection into row sums and couplings."""
-    value = rows.whole[f]
-    steps: list[Step] = [(Op.SPREAD_SUM, rows.columns[i], value, rows.weights[f, i]) for i in support]
-    return steps + [
-        (Op.SPREAD_COUPLING, rows.couplings[pair], value, *(rows.weights[f, i] for i in pair), rows.floors[pair])
-        for pair in map(frozenset, combinations(support, 2))
-    ]
+def _merge(removal: Removal, g: int, nodes: Iterable[int], rows: Layout) -> list[Step]:
+    """Turn one of two whole connections away from the node; what is left of it on a single node is a row sum."""
+    f, node, turn = removal.whole, removal.node, rows.turns[g, removal.node]
+    ends = rows.weights[f, node], rows.weights[g, node]
+    steps: list[Step] = [(Op.MERGE_WHOLE, rows.whole[f], rows.whole[g], *ends, turn)]
+    steps += [(Op.TURN, rows.whole[f] + WEIGHT_SUM, rows.whole[g] + WEIGHT_SUM, turn)]
+    steps += [(Op.TURN, rows.weights[f, j], rows.weights[g, j], turn) for j in sorted(nodes)]
+    absorbed = [j for h, j in removal.absorbed() if h == g]
+    return steps + [(Op.ABSORB_WHOLE, rows.columns[j], rows.whole[g], rows.weights[g, j]) for j in absorbed]
 
 
 def _star(removal: Removal, column: Sequence[int], rows: Layout) -> list[Step]:

@@ -9,7 +9,7 @@ without contraction or reassociation: a case has the same bits alone, among a mi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,7 @@ LANES = 64
 COMPLEX = 2 * LANES
 OPERANDS = 7
 _WIDTH = 8
+_INTEGER = ir.IntType(64)
 _VECTOR = ir.VectorType(ir.DoubleType(), _WIDTH)
 
 
@@ -94,8 +95,8 @@ class Rows:
 
     def at(self, row: Any, behind: int = 0) -> Any:
         """Address of a row (an offset known now or when running), ``behind`` doubles further on."""
-        offset = ir.Constant(ir.IntType(64), row) if isinstance(row, int) else row
-        start = self.builder.add(offset, ir.Constant(ir.IntType(64), behind))
+        offset = ir.Constant(_INTEGER, row) if isinstance(row, int) else row
+        start = self.builder.add(offset, ir.Constant(_INTEGER, behind))
         return self.builder.bitcast(self.builder.gep(self.base, [start]), _VECTOR.as_pointer())
 
     def constant(self, value: float) -> Real:
@@ -119,18 +120,34 @@ class Rows:
         self.put(row, old + value, behind)  # type: ignore[operator]
 
 
-def lane_operation(formula: Callable[..., None]) -> Any:
-    """Compile ``formula(rows, a, b, c, d, e, f, g)`` into ``operation(w, a, b, c, d, e, f, g)`` over a block of lanes."""
+Formula = Callable[..., None]
+"""A lane operation ``formula(rows, a, b, …)`` on rows at up to ``OPERANDS`` offsets."""
+
+
+def lane_program(formulas: Mapping[int, Formula]) -> Any:
+    """Compile formulas by number into ``operate(w, number, offsets…)``, which runs one of them over all lanes."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        blocks = ir.Constant(ir.IntType(64), LANES // _WIDTH)
-        with cgutils.for_range(builder, blocks) as loop:
-            lane = builder.mul(loop.index, ir.Constant(ir.IntType(64), _WIDTH))
-            formula(Rows(builder, builder.gep(data, [lane])), *arguments[1:])
+        end = builder.append_basic_block("end")
+        switch = builder.switch(arguments[1], end)
+        for number, formula in formulas.items():
+            block = builder.append_basic_block(formula.__name__)
+            switch.add_case(ir.Constant(_INTEGER, int(number)), block)
+            builder.position_at_end(block)
+            _write(builder, data, formula, arguments[2:])
+            builder.branch(end)
+        builder.position_at_end(end)
         return context.get_dummy_value()
 
-    def typed(context: Any, w: Any, a: Any, b: Any, c: Any, d: Any, e: Any, f: Any, g: Any) -> Any:
-        return types.void(w, *[types.int64] * OPERANDS), generate
+    def operate(context: Any, w: Any, op: Any, a: Any, b: Any, c: Any, d: Any, e: Any, f: Any, g: Any) -> Any:
+        return types.void(w, *[types.int64] * (1 + OPERANDS)), generate
 
-    return intrinsic(typed)
+    return intrinsic(operate)
+
+
+def _write(builder: Any, data: Any, formula: Formula, offsets: Any) -> None:
+    """The loop over a block's lanes, a vector at a time."""
+    with cgutils.for_range(builder, ir.Constant(_INTEGER, LANES // _WIDTH)) as loop:
+        lane = builder.mul(loop.index, ir.Constant(_INTEGER, _WIDTH))
+        formula(Rows(builder, builder.gep(data, [lane])), *offsets)
