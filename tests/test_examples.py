@@ -16,6 +16,7 @@ EXPECTED: dict[str, dict[Any, float]] = {
     "02_softer_clutch": {25.0: 654.1},
     "03_parts_by_hand": {"500 Nm": 12.10, "1500 Nm": 19.21},
     "04_two_flywheels_compared": {"median": 0.16},
+    "05_maps_as_a_picture": {"median": 0.11},
 }
 
 
@@ -37,5 +38,5 @@ def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     spec.loader.exec_module(module)
     found = module.main()
     for key, value in EXPECTED[name].items():
-        assert found[key] == pytest.approx(value, rel=0.02 if name.startswith("04") else 5e-4)
+        assert found[key] == pytest.approx(value, rel=0.05 if name[:2] in ("04", "05") else 5e-4)
     assert capsys.readouterr().out.strip()
