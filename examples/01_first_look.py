@@ -8,6 +8,8 @@ import torsional as tv
 def main() -> dict[str, float]:
     truck = tv.load_model("examples/truck_dmf.yaml")
     system, point = tv.operated(truck, torque=2000.0, gear=12)  # linear about 2000 Nm in direct gear
+    left = np.degrees(point.distance_to_stop("dmf"))
+    print(f"dual mass flywheel in {point.stage('dmf')}, {left:.1f}° from its stop")
     modes = tv.modal(system)
     for frequency, twisted in zip(modes.frequency.values[1:6], tv.dominant_element(modes).values[1:6], strict=True):
         print(f"{frequency:6.2f} Hz, third order at {20 * frequency:5.0f} rpm, most energy in {twisted}")

@@ -6,10 +6,11 @@ import torsional as tv
 
 
 def main() -> dict[str, float]:
+    stages = tv.Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)])
     line = tv.Powertrain(
         {
             "engine": tv.Inertia(1.8),
-            "springs": tv.Coupling("flywheel", "engine", tv.Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)]), damping=20.0),
+            "springs": tv.Coupling("flywheel", "engine", stages, damping=20.0),
             "flywheel": tv.Inertia(1.0),
             "shaft": tv.Shaft("pinion", "flywheel", stiffness=6e4, damping=2.0),
             "pinion": tv.Inertia(0.1),

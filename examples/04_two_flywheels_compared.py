@@ -14,7 +14,7 @@ def main() -> dict[str, float]:
         shaken[kind] = tv.swing(at_input).where(result.within_full_load)
     ratio = shaken["dmf"] / shaken["smf"]
     above = int((ratio > 1).sum()) / int(ratio.notnull().sum())
-    print(f"dual over single mass flywheel: median {float(ratio.median()):.2f}, above 1 in {100 * above:.1f} % of the map")
+    print(f"dual over single mass flywheel: median {float(ratio.median()):.2f}, above 1 in {above:.1%} of the map")
     return {"median": float(ratio.median()), "above": above}
 
 
