@@ -15,8 +15,8 @@ from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.model import Landmarks, Model
 from torsional.solvers.campbell import campbell, engine_orders, typical_torque
-from torsional.solvers.run_up import full_load_response
 from torsional.solvers.map import response_map
+from torsional.solvers.run_up import full_load_response
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 RPM = np.pi / 30
