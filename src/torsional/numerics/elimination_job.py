@@ -17,7 +17,7 @@ from torsional.numerics.elimination_route import Route
 from torsional.numerics.elimination_tape import Tape
 
 _T = TypeVar("_T", bound=np.generic)
-_BATCH_FLOATS = 500_000  # coefficients of a batch of designs, few enough to stay in the cache
+_BATCH_FLOATS = 100_000  # coefficients of a batch of designs, few enough to stay in the cache
 
 
 class Status(IntEnum):

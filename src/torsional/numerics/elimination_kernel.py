@@ -20,14 +20,27 @@ from torsional.numerics.lanes import LANES as L
 _U = np.uint64
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _tune(w: Array, omega: Array, speed: Array, frequency: int, lo: int, hi: int, step: int) -> None:
     """Set ω, ω² and Ω² of lanes lo … hi; ``step`` 0 repeats one frequency."""
-    for lane in range(hi - lo):
-        at = frequency + step * lane
-        w[OMEGA + lo + lane] = omega[at]
-        w[OMEGA_SQUARED + lo + lane] = omega[at] * omega[at]
-        w[SPEED_SQUARED + lo + lane] = speed[at] * speed[at]
+    _copy(w, OMEGA + lo, hi - lo, omega, frequency, step)
+    _copy(w, SPEED_SQUARED + lo, hi - lo, speed, frequency, step)
+    for lane in range(_U(lo), _U(hi)):
+        w[_U(OMEGA_SQUARED) + lane] = w[_U(OMEGA) + lane] * w[_U(OMEGA) + lane]
+    for lane in range(_U(lo), _U(hi)):
+        w[_U(SPEED_SQUARED) + lane] *= w[_U(SPEED_SQUARED) + lane]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _copy(w: Array, row: int, lanes: int, values: Array, start: int, step: int) -> None:
+    """Copy values to lanes; apart for adjacent ones, which is then a plain copy."""
+    r, at = _U(row), _U(start)
+    if step == 1:
+        for lane in range(_U(lanes)):
+            w[r + lane] = values[at + lane]
+    else:
+        for lane in range(_U(lanes)):
+            w[r + lane] = values[at]
 
 
 @njit(cache=True, error_model="numpy")
@@ -51,7 +64,7 @@ def _store(w: Array, rows: IntArray, lo: int, hi: int, x: Array, start: int, ste
             x[at + l + l + _U(1)] = w[row + _U(L) + _U(lo) + l]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _segment(first: int, lane: int, frequencies: int, cases: int) -> tuple[int, int, int, int]:
     """Design, frequency and frequency step at a lane, and the lane at which these end."""
     case = min(first + lane, cases - 1)
@@ -62,7 +75,7 @@ def _segment(first: int, lane: int, frequencies: int, cases: int) -> tuple[int, 
     return design, frequency, 1, min(lane + frequencies - frequency, L, cases - first)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _prepare(
     w: Array, rows: IntArray, sums: int, slots: Array, weight_rows: IntArray, weights: Array,
     omega: Array, speed: Array, first: int, cases: int,
@@ -79,7 +92,7 @@ def _prepare(
     fill(w, GUARD, 0, L, 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _transport(
     w: Array, rows: IntArray, loads: Array, strides: tuple[int, int, int], right: int, frequencies: int,
     first: int, cases: int,
@@ -93,7 +106,7 @@ def _transport(
         lane = stop
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _deliver(
     w: Array, rows: IntArray, x: Array, right: int, rights: int, frequencies: int, first: int, cases: int
 ) -> None:
@@ -106,15 +119,16 @@ def _deliver(
         lane = stop
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _judge(w: Array, flagged: NDArray[np.bool_], first: int) -> int:
     """Flag the cases of a block whose guard has grown too large or is not a number."""
-    count = 0
-    for lane in range(min(L, flagged.size - first)):
-        bad = not w[GUARD + lane] < GROWTH_LIMIT
-        flagged[first + lane] = bad
-        count += bad
-    return count
+    lanes, sound = _U(min(L, flagged.size - first)), 0
+    for lane in range(lanes):
+        sound += w[_U(GUARD) + lane] < GROWTH_LIMIT
+    if sound < lanes:
+        for lane in range(lanes):
+            flagged[_U(first) + lane] = not w[_U(GUARD) + lane] < GROWTH_LIMIT
+    return int(lanes) - sound
 
 
 @njit(cache=True, error_model="numpy")
