@@ -142,11 +142,27 @@ def _line(system: System, speeds: Array, orders: Array) -> _Line:
 
 def _crossings(system: System, speeds: Array, frequency: Array, orders: Array) -> Array:
     met = np.full((frequency.shape[1], len(orders)), np.nan)
-    for mode, over in enumerate(2 * np.pi * frequency.T):
+    at, found = _both_sides(system, speeds, frequency)
+    for mode, over in enumerate(2 * np.pi * found.T):
         for i, order in enumerate(orders):
             if over.max() > 0:
-                met[mode, i] = over[0] / order if np.ptp(over) == 0 else _met(system, speeds, over, mode, order)
+                met[mode, i] = over[0] / order if np.ptp(over) == 0 else _met(system, at, over, mode, order)
     return met
+
+
+def _both_sides(system: System, speeds: Array, frequency: Array) -> tuple[Array, Array]:
+    """The speeds and frequencies [Hz] with two more of each switched inertia: just before and just after it switches.
+
+    A frequency jumps there, and an order that it jumps over does not meet it.
+    """
+    low, high = speeds.min(), speeds.max()
+    switches = [s.speed for s in system.masses.switches if s is not None and low < s.speed < high]
+    more = np.array([side for speed in switches for side in (speed, np.nextafter(speed, np.inf))])
+    if not more.size:
+        return speeds, frequency
+    rows = np.array([natural_frequencies(system, float(speed)) for speed in more]) / (2 * np.pi)
+    both, first = np.unique(np.concatenate([speeds, more]), return_index=True)
+    return both, np.concatenate([frequency, rows])[first]
 
 
 def _met(system: System, speeds: Array, omega: Array, mode: int, order: float) -> float:
@@ -157,7 +173,8 @@ def _met(system: System, speeds: Array, omega: Array, mode: int, order: float) -
         return float(natural_frequencies(system, speed)[mode]) - order * speed
 
     over = omega - order * speeds
-    turns = np.flatnonzero(np.sign(over[1:]) * np.sign(over[:-1]) < 0)
+    jumps = np.nextafter(speeds[:-1], np.inf) == speeds[1:]
+    turns = np.flatnonzero((np.sign(over[1:]) * np.sign(over[:-1]) < 0) & ~jumps)
     if not turns.size:
         return float("nan")
     low, high = float(speeds[turns[0]]), float(speeds[turns[0] + 1])
