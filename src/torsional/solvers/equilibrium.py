@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from torsional.errors import ModelError, nearest
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
+from torsional.numerics.null_space import null_vectors
 from torsional.system import System
 
 ITERATIONS = 100
@@ -110,14 +111,20 @@ def linearize(system: System, point: OperatingPoint) -> System:
 
 
 def _balanced(system: System, torques: Mapping[str, ArrayLike], hold: str) -> Array:
-    """Mean torques on the coordinates (cases, coordinates), the reaction at ``hold`` included."""
+    """Mean torques on the coordinates (cases, coordinates), the reaction at ``hold`` included.
+
+    No work is left on what is free to turn; springs to the ground take no share.
+    """
     held = system.T[system.node_index(hold)]
     values = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in torques.values()))
     rows = np.array([system.T[system.node_index(node)] for node in torques])
     loads = np.column_stack([np.ravel(value) for value in values]) @ rows
-    if held.sum() == 0:
-        raise ModelError(f"node '{hold}' does not turn and takes up no mean torque", where=hold)
-    return np.asarray(loads - np.outer(loads.sum(axis=1) / held.sum(), held))
+    turns = np.array([system.speed_ratio[system.node_index(node)] != 0 for node in system.coordinates], dtype=float)
+    for free in (null_vectors(system.connections.weights[_carrying(system)]), turns[:, None]):
+        along = held @ free
+        if along.any():
+            return np.asarray(loads - np.outer(loads @ free @ along / (along @ along), held))
+    raise ModelError(f"node '{hold}' does not turn and takes up no mean torque", where=hold)
 
 
 def _carrying(system: System) -> Array:
@@ -161,26 +168,38 @@ def _forces(system: System, angle: Array) -> tuple[Array, Array]:
 
 
 def _newton(system: System, load: Array) -> Array:
-    """Coordinates in equilibrium where springs act side by side; rigid rotation is left out by least squares."""
+    """Coordinates in equilibrium where springs act side by side; rigid rotation is left out by least squares.
+
+    Rising laws have a convex potential: Newton's direction with an exact search along it finds its lowest place.
+    """
     weights = system.connections.weights
     q, scale = np.zeros(weights.shape[1]), max(float(np.abs(load).max()), 1.0)
     for _ in range(ITERATIONS):
-        torque, tangent = _forces(system, weights @ q)
+        angle = weights @ q
+        torque, tangent = _forces(system, angle)
         rest = load - weights.T @ torque
-        if np.abs(rest).max() <= 1e-11 * scale:
+        rounding = 8 * np.finfo(float).eps * float((np.abs(torque) + tangent * np.abs(angle)).max())
+        if np.abs(rest).max() <= 1e-11 * scale + rounding:
             return q
-        soft = np.maximum(tangent, 1e-9 * tangent.max())  # a free range is crossed, not divided by
-        step = np.linalg.lstsq((weights.T * soft) @ weights, rest, rcond=1e-14)[0]
-        q = q + _shortened(system, q, step, load)
+        soft = np.maximum(tangent, 1e-9 * tangent.max() or 1.0)  # a free range is crossed, not divided by
+        step = np.asarray(np.linalg.lstsq((weights.T * soft) @ weights, rest, rcond=1e-14)[0])
+        q = q + _length(system, q, step, load) * step
     raise ModelError("no equilibrium found under the mean torque", found=f"{np.abs(load).max():g} Nm")
 
 
-def _shortened(system: System, q: Array, step: Array, load: Array) -> Array:
-    """The Newton step, halved until the work it does against the unbalanced torque does not turn round."""
+def _length(system: System, q: Array, step: Array, load: Array) -> float:
+    """How many Newton steps to go until the unbalanced torque does no more work along them: one, where that will do."""
     weights = system.connections.weights
-    for _ in range(40):
-        torque, _ = _forces(system, weights @ (q + step))
-        if float((load - weights.T @ torque) @ step) >= -0.5 * abs(float(step @ load)) - 1e-12:
-            return step
-        step = 0.5 * step
-    return step
+
+    def work(length: float) -> float:
+        return float((load - weights.T @ _forces(system, weights @ (q + length * step))[0]) @ step)
+
+    start, end = work(0.0), work(1.0)
+    if abs(end) <= 0.5 * start:
+        return 1.0
+    from scipy.optimize import brentq  # imported where used: most equilibria are settled by statics
+
+    low, high = (0.0, 1.0) if end < 0 else (1.0, 2.0)
+    while work(high) > 0 and high < 2.0**60:
+        low, high = high, 2 * high
+    return float(brentq(work, low, high, xtol=1e-300)) if work(high) <= 0 else high
