@@ -18,7 +18,9 @@ Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
 @dataclass(frozen=True)
 class Rollers:
     """Rollers of a bifilar pendulum: ``mass`` [kg] and spin ``inertia`` [kgm²] of all, ``radius`` [m], ``distance``
-    [m] of their centres from the axis.  A roller's centre makes half the pendulum's way and turns by −s/(2r)."""
+    [m] of their centres from the axis.  A roller's centre makes half the pendulum's way and turns by −s/(2r).
+
+    They move the tuned order off that of the path: see `CentrifugalPendulum.tuned_order`."""
 
     mass: float
     inertia: float
@@ -33,6 +35,7 @@ class CentrifugalPendulum:
     From T = ½Jθ̇² + ½m(ṡ² + R²θ̇² + 2Gṡθ̇) at small s follow the inertia m c² and the stiffness m c² n² Ω² between
     ``carrier`` and pendulum (its angle is θ + s/c); every ``path`` has the same order at small amplitude
     n² = c/ρ0 − 1, ρ0 the radius of curvature at rest (Denman, J. Sound Vib. 159 (1992) 251).  ``damping`` [Nms/rad].
+    With ``rollers`` ``order`` stays that of the path.
 
     >>> p = CentrifugalPendulum("rotor", mass=1.0, distance=0.1 * (1 + 1 / 9), order=3.0)
     >>> round(p.curvature_radius, 9)
@@ -61,20 +64,42 @@ class CentrifugalPendulum:
         """ρ0 = c/(1 + n²) [m]."""
         return self.distance / (1 + self.order**2)
 
+    @property
+    def tuned_order(self) -> float:
+        """The order at which the carrier stands still, without damping: that of the path, or with rollers:
+
+        n_t² = (m n² + m_r (d − ρ0/2)/(2 ρ0)) / (m + m_r/4 + I_r/(4 r²)),  d their distance from the axis.
+
+        >>> rollers = Rollers(mass=0.1, inertia=5e-6, radius=0.01, distance=0.11)
+        >>> round(CentrifugalPendulum("rotor", mass=1.0, distance=0.11, order=3.0, rollers=rollers).tuned_order, 4)
+        3.022
+        """
+        moment = self.mass * self.distance**2
+        if self.rollers:
+            moment += self.distance**2 / 4 * (self.rollers.mass + self.rollers.inertia / self.rollers.radius**2)
+        return math.sqrt(self._stiffness / moment)
+
+    @property
+    def _stiffness(self) -> float:
+        """Centrifugal stiffness over Ω² [kg m²], along ψ − θ."""
+        stiffness = self.mass * self.distance**2 * self.order**2
+        if self.rollers:
+            rho = self.curvature_radius
+            stiffness += self.rollers.mass * self.distance**2 * (self.rollers.distance - rho / 2) / (2 * rho)
+        return stiffness
+
     def stamps(self, name: str) -> Iterator[Stamp]:
         """½ m c² ψ̇² and the centrifugal spring m c² n² Ω² along ψ − θ; rollers as two more masses."""
-        moment = self.mass * self.distance**2
         along = {self.carrier: -1.0, name: 1.0}
-        stiffness = moment * self.order**2
-        yield Mass(name, {name: 1.0}, moment)
+        yield Mass(name, {name: 1.0}, self.mass * self.distance**2)
         if self.rollers:
-            rho, half, spin = self.curvature_radius, self.distance / 2, self.distance / (2 * self.rollers.radius)
-            stiffness += self.rollers.mass * self.distance**2 * (self.rollers.distance - rho / 2) / (2 * rho)
+            half, spin = self.distance / 2, self.distance / (2 * self.rollers.radius)
             way = {self.carrier: self.rollers.distance - half, name: half}
             yield Mass(f"{name}.rollers", way, self.rollers.mass)
             yield Mass(f"{name}.roller_spin", {self.carrier: 1.0 + spin, name: -spin}, self.rollers.inertia)
+        lift = self._stiffness
         yield Connection(
-            f"{name}.suspension", along, damping=self.damping, centrifugal_stiffness=stiffness, carrier=self.carrier
+            f"{name}.suspension", along, damping=self.damping, centrifugal_stiffness=lift, carrier=self.carrier
         )
 
 
@@ -91,12 +116,14 @@ def tuning_order(path: Path, order: float, distance: float, amplitude: float) ->
     from scipy.integrate import quad  # imported where used: scipy takes longer to import than a whole modal analysis
     from scipy.special import ellipk
 
+    rho = distance / (1 + order**2)
+    ends = {"circular": math.pi * rho, "cycloid": rho}  # the others end where their curvature does
+    end = ends.get(path, distance / (order * math.sqrt(1 + order**2)))
+    if not 0 < amplitude <= end:
+        found, allowed = f"{amplitude:g} m", f"above 0, up to {end:g} m"
+        raise ModelError("the pendulum's path ends before", where="amplitude", found=found, allowed=allowed)
     if path == "circular":
-        swing = amplitude * (1 + order**2) / distance
-        return order * math.pi / (2 * float(ellipk(math.sin(swing / 2) ** 2)))
-    end = distance / (order * math.sqrt(1 + order**2))
-    if not 0 < amplitude <= end and path != "cycloid":
-        raise ModelError("the pendulum's path ends before", where="amplitude", found=f"{amplitude:g} m")
+        return order * math.pi / (2 * float(ellipk(math.sin(amplitude / rho / 2) ** 2)))
     if path in ("tautochrone", "epicycloid"):
         return order
 
@@ -105,7 +132,8 @@ def tuning_order(path: Path, order: float, distance: float, amplitude: float) ->
         return amplitude * math.cos(u) / math.sqrt(squared_distance(path, order, distance, s) - rest)
 
     rest = squared_distance(path, order, distance, amplitude)
-    quarter = quad(integrand, 0.0, math.pi / 2 - 1e-7, epsrel=1e-11)[0]
+    cut = math.pi / 2 - 1e-4  # beyond it the root is a difference of equal numbers and the integrand is even
+    quarter = quad(integrand, 0.0, cut, epsrel=1e-11)[0] + (math.pi / 2 - cut) * integrand(cut)
     return math.pi / 2 / float(quarter)
 
 
