@@ -14,7 +14,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
 from torsional.results import dataset
 from torsional.solvers.harmonic import element_torques, response
-from torsional.solvers.operating import mean_state
+from torsional.solvers.operating import mean_state, torque_places
 from torsional.system import System, assemble
 
 HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
@@ -45,7 +45,8 @@ def response_map(
     torques = np.atleast_1d(model.torques(26) if torque is None else np.asarray(torque, dtype=float))
     names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
     n = np.atleast_1d(np.asarray(orders, dtype=float))
-    excitation = model.engine.harmonics(speeds[None, :], torques[:, None], n)
+    throws = torque_places(model).throws  # a single one takes the torques of all cylinders
+    excitation = model.engine.excitation(throws, speeds[None, :], torques[:, None], n).torque
     loads = np.moveaxis(excitation, -2, -1).reshape(len(torques), -1, excitation.shape[-2])
     cells = []
     for done, gear in enumerate(names, 1):

@@ -6,16 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
-from torsional.model import Model
+from torsional.model import Landmarks, Model
 from torsional.solvers.equilibrium import OperatingPoint, equilibrium, linearize
 from torsional.system import System, assemble
 
 
-def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoint:
-    """Equilibrium of a model's ``system`` under mean engine ``torque`` [Nm] (any shape), shared by the throws alike.
-
-    Raises ModelError where the model does not say where torque enters (throws) and is taken up (load).
-    """
+def torque_places(model: Model) -> Landmarks:
+    """The landmarks of a model that says where mean torque enters (throws) and is taken up (load); else ModelError."""
     marks = model.landmarks
     if not marks.throws or not marks.load:
         raise ModelError(
@@ -23,6 +20,15 @@ def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoin
             where="landmarks",
             remedy="name landmarks.throws (or an engine block) and landmarks.load",
         )
+    return marks
+
+
+def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoint:
+    """Equilibrium of a model's ``system`` under mean engine ``torque`` [Nm] (any shape), shared by the throws alike.
+
+    Raises ModelError where the model does not say where torque enters (throws) and is taken up (load).
+    """
+    marks = torque_places(model)
     share = np.asarray(torque, dtype=float) / len(marks.throws)
     return equilibrium(system, dict.fromkeys(marks.throws, share), hold=marks.load)
 

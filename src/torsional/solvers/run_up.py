@@ -98,7 +98,8 @@ def _coordinates(
     for number in range(int(group.max()) + 1):
         at = np.flatnonzero(group.ravel() == number)
         linear = linearize(system, state.at(int(at[0])))
-        loads = np.moveaxis(engine.harmonics(speeds[at], torques[at], orders), 1, 2).reshape(-1, len(throws))
+        excitation = engine.excitation(throws, speeds[at], torques[at], orders)
+        loads = np.moveaxis(excitation.torque, 1, 2).reshape(-1, len(throws))
         omega, turning = np.outer(speeds[at], orders).ravel(), np.repeat(speeds[at], len(orders))
         part, _ = response(linear, omega, turning, throws, loads)
         q[at] = part.reshape(len(at), len(orders), -1)
