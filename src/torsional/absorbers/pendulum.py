@@ -27,6 +27,12 @@ class Rollers:
     radius: float
     distance: float
 
+    def __post_init__(self) -> None:
+        checks.positive(self.mass, "rollers.mass", "mass")
+        checks.not_negative(self.inertia, "rollers.inertia", "inertia")
+        checks.positive(self.radius, "rollers.radius", "length")
+        checks.positive(self.distance, "rollers.distance", "length")
+
 
 @dataclass(frozen=True)
 class CentrifugalPendulum:
