@@ -22,14 +22,15 @@ COMPLEX = "real_imaginary"
 
 def dataset(
     variables: Mapping[str, Variable],
-    coordinates: Mapping[str, tuple[Any, str]],
+    coordinates: Mapping[str, tuple[Any, str] | tuple[Any, str, str]],
     *,
     analysis: str,
     **provenance: object,
 ) -> xr.Dataset:
     """A Dataset whose every variable carries its unit and long name from the nomenclature.
 
-    ``variables``: {name: (dimensions, values, quantity)}; ``coordinates``: {dimension: (values, quantity or "")};
+    ``variables``: {name: (dimensions, values, quantity)}; ``coordinates``: {dimension: (values, quantity or "")}, with
+    the dimension as a third entry where the coordinate only labels it;
     ``provenance`` is kept in the attributes (model, hash, settings) beside the analysis and the version.
 
     >>> ds = dataset({"torque": (("speed",), [1.0], "torque")}, {"speed": ([100.0], "speed")}, analysis="example")
@@ -39,11 +40,15 @@ def dataset(
     from torsional import __version__
 
     data = {name: xr.Variable(dims, np.asarray(v), _described(q)) for name, (dims, v, q) in variables.items()}
-    coords = {name: xr.Variable((name,), np.asarray(v), _described(q)) for name, (v, q) in coordinates.items()}
+    coords = {name: _coordinate(name, *given) for name, given in coordinates.items()}
     plain = (str, int, float)
     settings = {key: value if isinstance(value, plain) else json.dumps(value) for key, value in provenance.items()}
     attrs = {"analysis": analysis, "torsional_version": __version__, "schema": SCHEMA, **settings}
     return xr.Dataset(data, coords, attrs)
+
+
+def _coordinate(name: str, values: Any, quantity: str, dimension: str = "") -> xr.Variable:
+    return xr.Variable((dimension or name,), np.asarray(values), _described(quantity))
 
 
 def _described(quantity: str) -> dict[str, str]:

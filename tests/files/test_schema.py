@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from torsional.errors import ModelError
@@ -24,14 +25,12 @@ def blocks(node: Any) -> list[dict[str, Any]]:
 
 
 def test_is_a_schema_of_draft_2020_12() -> None:
-    jsonschema = pytest.importorskip("jsonschema")
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     assert SCHEMA["$schema"].endswith("2020-12/schema")
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_shipped_models_are_valid_under_the_schema(path: Path) -> None:
-    jsonschema = pytest.importorskip("jsonschema")
     validator = jsonschema.Draft202012Validator(SCHEMA)
     data = read_tree(path).data
     assert [error.message for error in validator.iter_errors(data)] == []

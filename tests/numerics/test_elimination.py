@@ -259,7 +259,6 @@ def test_connected_whole_sets_stay_whole() -> None:
                       np.array([1e-4, 1.0, 1e4, 1e-3]), np.zeros(4, complex), 30.0, 3)  # fmt: skip
     from tests.numerics.elimination_models import exact
 
-    pytest.importorskip("mpmath")
     assert solved(model).x[0, 0, 0] == pytest.approx(exact(model), rel=1e-11)
 
 

@@ -62,11 +62,12 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
             "order": (orders, "engine_order"),
             "node": (np.array(system.nodes), ""),
             "element": (np.array(system.connections.names), ""),
+            "speed_ratio": (system.speed_ratio, "gear_ratio", "node"),
         },
         analysis="harmonic response",
         amplitude="complex 0-peak",
         system_hash=system.hash,
-    ).assign_coords(speed_ratio=("node", system.speed_ratio))
+    )
 
 
 def response(
