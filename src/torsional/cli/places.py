@@ -59,4 +59,3 @@ def together(angle: xr.DataArray, torque: xr.DataArray) -> dict[str, xr.DataArra
 def without_empty(data: xr.Dataset) -> xr.Dataset:
     """The result without the kind of place of which none is looked at."""
     return data.drop_dims([dim for dim in ("node", "element") if data.sizes.get(dim) == 0])
-
