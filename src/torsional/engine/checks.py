@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from torsional.errors import ModelError
+from torsional.units import show
 
 
 def finite(value: float, where: str, unit: str = "") -> float:
@@ -23,6 +24,11 @@ def positive(value: float, where: str, unit: str = "") -> float:
     if finite(value, where, unit) <= 0:
         raise ModelError("the value must be positive", where=where, found=f"{value:g} {unit}".strip())
     return float(value)
+
+
+def both(speed: float) -> str:
+    """A speed [rad/s] in a message, in rpm too, as which most are written."""
+    return f"{speed:g} rad/s ({show(speed, 'speed')})"
 
 
 def within(value: float, low: float, high: float, where: str, unit: str = "") -> float:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import finite, positive
+from torsional.engine.checks import both, finite, positive
 from torsional.engine.orders import FloatArray
 from torsional.errors import ModelError
 
@@ -49,7 +49,7 @@ class FullLoad:
             raise ModelError(
                 "the full-load curve does not reach this speed",
                 where="full_load",
-                found=f"{np.atleast_1d(asked)[np.atleast_1d(outside)][0]:g} rad/s",
-                allowed=f"{self.speeds[0]:g} to {self.speeds[-1]:g} rad/s",
+                found=both(float(np.atleast_1d(asked)[np.atleast_1d(outside)][0])),
+                allowed=f"{both(self.speeds[0])} to {both(self.speeds[-1])}",
             )
         return np.asarray(np.interp(asked, self.speeds, self.torques))

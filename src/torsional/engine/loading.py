@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from torsional.engine.checks import both
 from torsional.engine.orders import BoolArray, FloatArray, IntArray
 from torsional.errors import ModelError
 
@@ -97,7 +98,7 @@ def refuse_below_motored(wanted: FloatArray, least: FloatArray, speed: FloatArra
         raise ModelError(
             "the mean torque is below that of the motored engine without any fuel",
             where="mean_torque",
-            found=f"{wanted[index]:g} Nm at {speed[index]:g} rad/s",
+            found=f"{wanted[index]:g} Nm at {both(float(speed[index]))}",
             allowed=f"{least[index]:g} Nm and more",
             remedy="engine brakes are not in the built-in cycle; see motored_torque",
         )
