@@ -276,3 +276,37 @@ def test_version(torsional: Run) -> None:
     from torsional import __version__
 
     assert torsional("--version").out == f"torsional {__version__}\n"
+
+
+def test_one_order_alone_swings_by_its_amplitude(torsional: Run, truck: str) -> None:
+    """A single order is told once, and several that were chosen are not called all orders."""
+    alone = torsional("respond", truck, "--order", "3").out
+    assert "order 3, 0-peak" in alone
+    assert "half peak-to-peak" not in alone
+    several = torsional("respond", truck, "--order", "3", "--order", "6").out
+    assert "orders chosen, half peak-to-peak" in several
+    assert "all orders" not in several
+
+
+def test_torque_above_full_load_is_told(torsional: Run, truck: str) -> None:
+    told = torsional("modes", truck, "--torque", "9000 Nm")
+    assert told.err == "warning: --torque: 9000 Nm is above full load, which is 2500 Nm at most\n"
+    assert torsional("modes", truck, "--torque", "2500 Nm").err == ""
+
+
+def test_a_unit_that_is_written_was_not_forgotten(torsional: Run, truck: str) -> None:
+    assert "warning" not in torsional("respond", truck, "--torque", "500Nm", "--speed", "600:9000rpm").err
+
+
+def test_the_first_modes_are_those_of_a_turning_pendulum(torsional: Run, truck: str) -> None:
+    """`check` tells the modes that `modes` tells, at the speed of the highest full load."""
+    pendulum = truck.replace("truck_dmf", "truck_dmf_pendulum")
+    checked = json.loads(torsional("check", pendulum, "--json").out)["modes"]
+    modal = json.loads(torsional("modes", pendulum, "--json").out)["result"]["variables"]["frequency"]["values"][0]
+    assert [mode["frequency"]["value"] for mode in checked] == pytest.approx(modal[1:7], rel=1e-12)
+    assert "pendulum.suspension mode" in [mode["name"] for mode in checked]
+
+
+def test_the_campbell_picture_names_the_modes(torsional: Run, truck: str) -> None:
+    assert torsional("campbell", truck, "-o", "c.svg").code == 0
+    assert "clutch mode" in Path("c.svg").read_text(encoding="utf-8")

@@ -27,6 +27,11 @@ BAD = [
     (["map", TRUCK, "--torque", "900:100Nm"], ["--torque", "above its start"]),
     (["respond", TRUCK, "--speed", "600:2000:20"], ["full_load", "found 600 rad/s", "allowed"]),
     (["respond", TRUCK, "--order", "2.3"], ["order", "2.3"]),
+    (["respond", TRUCK, "--order", "0"], ["--order", "positive", "found 0"]),
+    (["modes", TRUCK, "--order", "0"], ["--order", "positive", "found 0"]),
+    (["modes", TRUCK, "--speed", "-10rpm"], ["--speed", "backwards", "found -10 rpm"]),
+    (["map", TRUCK, "--speed", "-600:900rpm"], ["--speed", "backwards", "found -600 rpm"]),
+    (["map", TRUCK, "--speed", "600:3000rpm"], ["full_load", "(600 rpm) to 209.44 rad/s (2000 rpm)"]),
     (["respond", TRUCK, "--orders", "0.5:x"], ["--orders", "a number is wanted"]),
     (["respond", TRUCK, "--node", "gearbox_imput"], ["--node", "did you mean 'gearbox_input'?"]),
     (["map", TRUCK, "--element", "clutsch"], ["--element", "did you mean 'clutch'?"]),
@@ -115,6 +120,7 @@ def failing(monkeypatch: pytest.MonkeyPatch, failure: BaseException) -> None:
     [
         (ZeroDivisionError("oh"), 1, "error: this should not have happened: ZeroDivisionError: oh; TORSIONAL_DEBUG=1"),
         (MemoryError(), 1, "error: there is not enough memory"),
+        (OSError(28, "No space left on device"), 1, "error: the system says: No space left on device"),
         (KeyboardInterrupt(), 130, "stopped, nothing written"),
         (SystemExit(7), 7, ""),
     ],
@@ -130,6 +136,14 @@ def test_unexpected_failures(
     assert told.err.startswith(said)
     assert "Traceback" not in told.err
     assert told.err.count("\n") == bool(said)
+
+
+@pytest.mark.parametrize("command", ["map --gear all --torque 0:2500:0.01Nm", "respond --order 3"])
+def test_grids_that_no_memory_holds_are_refused_at_once(torsional: Run, truck: str, command: str) -> None:
+    name, *options = command.split()
+    told = torsional(name, truck, *options, "--speed", "600:2000:0.002rpm", "--orders", "0.5:180")
+    assert (told.code, told.out) == (1, "")
+    assert told.err == "error: there is not enough memory for this; ask for fewer speeds, torques, orders or gears\n"
 
 
 def test_the_traceback_is_there_for_who_asks(torsional: Run, truck: str, monkeypatch: pytest.MonkeyPatch) -> None:

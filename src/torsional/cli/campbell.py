@@ -50,7 +50,7 @@ def run(
 def _table(data: xr.Dataset, model: Model, gear: str) -> Table:
     middle = data.isel(speed=data.sizes["speed"] // 2)
     kept = np.flatnonzero(middle.frequency.values > 0)
-    names = named_modes(middle.isel(mode=np.flatnonzero(np.isfinite(middle.frequency.values))), model.mode_groups)
+    names = _names(middle, model)
     columns = [Column("mode", "number"), Column("name"), Column("frequency", "frequency")]
     columns += [Column(f"order {n:g} at", "speed") for n in data.order.values]
     rows = [[int(i), names[i], float(middle.frequency[i]), *map(float, data.crossing[i].values)] for i in kept]
@@ -60,7 +60,15 @@ def _table(data: xr.Dataset, model: Model, gear: str) -> Table:
     return Table(f"Speeds at which orders meet modes{in_gear(gear)}; {told}", columns, rows)
 
 
+def _names(at: xr.Dataset, model: Model) -> list[str]:
+    """The modes' names in one gear at one speed."""
+    return named_modes(at.isel(mode=np.flatnonzero(np.isfinite(at.frequency.values))), model.mode_groups)
+
+
 def _picture(data: xr.Dataset, model: Model) -> Figure:
     from torsional.plots import plot_campbell
+    from torsional.plots.style import readable
 
-    return plot_campbell(data, speed=model.operation.speed, idle=model.operation.idle)
+    gear, last = str(data.gear.values[-1]), data.isel(gear=-1, speed=-1)  # the lines that are named, where they end
+    names = {gear: [readable(name) for name in _names(last, model)]}
+    return plot_campbell(data, names, speed=model.operation.speed, idle=model.operation.idle)

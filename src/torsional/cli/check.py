@@ -53,7 +53,7 @@ def run(request: Request, gear: str, torque: str, expand: bool) -> None:
 def checked_model(model: Model, gear: str, torque: float) -> Document:
     """Everything that is told of a model in one gear under a mean torque [Nm]."""
     system, point = operated(model, torque, gear or None)
-    springs, elastic = list(standing(model, point)), list(first_modes(model, system))
+    springs, elastic = list(standing(model, point)), list(first_modes(model, system, inputs.speed(model, "")))
     warnings = [*warnings_of(model), *doubts(elastic, torque, springs)]
     return {"summary": summary(model, gear), "equilibrium": springs, "modes": elastic, "warnings": warnings}
 
@@ -108,9 +108,9 @@ def standing(model: Model, point: OperatingPoint) -> Iterator[Document]:
             }
 
 
-def first_modes(model: Model, system: System) -> Iterator[Document]:
-    """The first elastic modes at standstill of the mean twist, by name."""
-    found = modal(system)
+def first_modes(model: Model, system: System, speed: float) -> Iterator[Document]:
+    """The first elastic modes about the mean twist at a mean ``speed`` [rad/s], which tunes pendulums, by name."""
+    found = modal(system, speed)
     names = named_modes(found, model.mode_groups)
     elastic = np.flatnonzero(found.frequency.values > 0)[:SHOWN_MODES]
     for i in elastic:

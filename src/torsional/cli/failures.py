@@ -111,6 +111,14 @@ def _full_memory(_: BaseException) -> int:
     return FAILED
 
 
+def _unwritable(failure: BaseException) -> int:
+    """A full disk, a device that is gone: nothing a traceback would explain."""
+    path = getattr(failure, "filename", None)
+    reason = getattr(failure, "strerror", None) or str(failure)
+    complain(f"{path}: {reason}" if path else f"the system says: {reason}")
+    return FAILED
+
+
 def _exits(failure: BaseException) -> int:
     code = getattr(failure, "code", None)
     return code if isinstance(code, int) else DONE if code is None else FAILED
@@ -121,6 +129,7 @@ _ANSWERS: tuple[tuple[type[BaseException], Callable[[BaseException], int]], ...]
     (KeyboardInterrupt, _stopped),
     (BrokenPipeError, _unread),
     (MemoryError, _full_memory),
+    (OSError, _unwritable),
     (SystemExit, _exits),
 )
 

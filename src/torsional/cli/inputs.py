@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,13 @@ def torque(model: Model, text: str) -> float:
     """One mean engine torque [Nm]; by default the highest of the full-load curve."""
     from torsional.solvers.campbell import typical_torque
 
-    return _value(text, "torque", "--torque") if text else typical_torque(model)
+    if not text:
+        return typical_torque(model)
+    value = _value(text, "torque", "--torque")
+    if model.engine and model.engine.full_load and value > (1 + 1e-9) * model.full_load_peak():
+        asked, most = (units.show(each, "torque") for each in (value, model.full_load_peak()))
+        complain(f"--torque: {asked} is above full load, which is {most} at most", kind="warning")
+    return value
 
 
 def speed(model: Model, text: str) -> float:
@@ -71,12 +78,25 @@ def orders(single: Sequence[float] | None, text: str) -> Array | None:
     found = [_value(value, "engine_order", "--order") for value in single or ()]
     if text:
         found += [float(n) for n in _values(text, "engine_order", "--orders", 0)]
+    if found and min(found) <= 0:
+        raise ModelError("an engine order is positive", where="--order", found=f"{min(found):g}")
     return np.unique(np.array(found)) if found else None
+
+
+def affordable(points: int, width: int) -> None:
+    """MemoryError for more complex numbers than this machine can hold, rather than an end without a word."""
+    try:
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):  # not told by every system
+        return
+    if 16 * points * width > memory:
+        raise MemoryError
 
 
 def _value(text: str | float, quantity: str, option: str) -> float:
     value = units.read(text, quantity, where=option)
-    _doubt([value], quantity, option)
+    _refuse_backward(value, quantity, option)
+    _doubt([value], quantity, option, text)
     return value
 
 
@@ -85,14 +105,22 @@ def _values(text: str, quantity: str, option: str, count: int) -> Array:
     if ":" not in text:
         return np.array([_value(text, quantity, option)])
     start, stop, *step = units.read_range(text, quantity, where=option)
-    _doubt([start, stop], quantity, option)
+    _refuse_backward(start, quantity, option)
+    _doubt([start, stop], quantity, option, text)
     if not step and count:
         return np.linspace(start, stop, count)
     width = step[0] if step else 0.5
     return np.asarray(start + width * np.arange(int((stop - start) / width * (1 + 1e-12) + 1e-9) + 1))
 
 
-def _doubt(values: Sequence[float], quantity: str, option: str) -> None:
-    """Say on stderr what looks like a forgotten unit."""
+def _refuse_backward(value: float, quantity: str, option: str) -> None:
+    if quantity == "speed" and value < 0:
+        raise ModelError("an engine does not turn backwards", where=option, found=units.show(value, "speed"))
+
+
+def _doubt(values: Sequence[float], quantity: str, option: str, text: str | float) -> None:
+    """Say on stderr what looks like a forgotten unit; nothing where one is written."""
+    if str(text).rstrip()[-1:].isalpha():
+        return
     for warning in dict.fromkeys(told for value in values for told in units.plausible(value, quantity)):
         complain(f"{option}: {warning}", kind="warning")

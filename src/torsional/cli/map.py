@@ -40,8 +40,11 @@ def run(
     gears, asked = inputs.gears(machine, gear), inputs.orders(order, orders)
     speeds, torques = inputs.speeds(machine, speed, SPEEDS), inputs.torques(machine, torque, TORQUES)
     nodes, elements = chosen_places(machine, gears[-1], node, element)
+    n = HALF_ORDERS if asked is None else asked
+    kept = len(gears) * (len(nodes) + len(elements))
+    width = len(machine.powertrain(gears[-1] or None).nodes) + 2 * len(machine.landmarks.throws) + kept
+    inputs.affordable(len(speeds) * len(torques) * len(n), width)
     with progress("gears", request.quiet or request.as_json) as moved:
-        n = HALF_ORDERS if asked is None else asked
         found = response_map(machine, speeds, torques, gears, n, nodes=nodes, elements=elements, progress=moved)
         data, full = reduced(found, machine), without_empty(found)
     _warn_unsolved(full)

@@ -38,7 +38,8 @@ def run(
     machine = request.model
     names = inputs.gears(machine, gear)
     mean, at = inputs.torque(machine, torque), inputs.speed(machine, speed)
-    main = order if order is not None else next(iter(engine_orders(machine)), None)
+    asked = inputs.orders(None if order is None else [order], "")
+    main = float(asked[0]) if asked is not None else next(iter(engine_orders(machine)), None)
     found = [modes_of(machine, name, mean, at, main) for name in names]
     settings = {"gears": names, "torque": amount(mean, "torque"), "speed": amount(at, "speed"), "order": main}
     tables = [_table(data, name, settings) for data, name in zip(found, names, strict=True)]

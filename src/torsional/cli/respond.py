@@ -46,14 +46,15 @@ def run(
     engaged, speeds = inputs.one_gear(machine, gear), inputs.speeds(machine, speed, SPEEDS)
     mean = np.full(len(speeds), inputs.torque(machine, torque)) if torque else full_load(machine, speeds)
     asked = inputs.orders(order, orders)
+    n = HALF_ORDERS if asked is None else asked
     places = chosen_places(machine, engaged, node, element)
-    data = response(machine, engaged, speeds, mean, HALF_ORDERS if asked is None else asked, *places)
+    inputs.affordable(len(speeds) * len(n), 4 * len(machine.powertrain(engaged or None).components))
+    data = response(machine, engaged, speeds, mean, n, *places)
     loaded: object = amount(float(mean[0]), "torque") if torque else "full load"
     settings = {"gear": engaged, "torque": loaded, "orders": data.order.values}
     title = f"{in_gear(engaged)}, " + (show(float(mean[0]), "torque") if torque else "full load")
-    answer = Answer(
-        "respond", tables(data, title), told_settings(request, **settings), data, picture=lambda: _picture(data)
-    )
+    found, told = tables(data, title, chosen=asked is not None), told_settings(request, **settings)
+    answer = Answer("respond", found, told, data, picture=lambda: _picture(data))
     deliver(answer, request)
 
 
@@ -65,10 +66,11 @@ def response(
     return without_empty(found.drop_vars(("twist", "mean_twist")).assign(together(found.angle, found.torque)))
 
 
-def tables(data: xr.Dataset, title: str) -> list[Table]:
-    """Peaks of accelerations at nodes and of torques of elements."""
+def tables(data: xr.Dataset, title: str, chosen: bool = False) -> list[Table]:
+    """Peaks of accelerations at nodes and of torques of elements; of orders ``chosen`` it is said that they are."""
     kinds = (("node", "acceleration"), ("element", "torque"))
-    return [_table(data, dim, kind, orders_of(data, dim), title) for dim, kind in kinds if dim in data.dims]
+    which = "orders chosen" if chosen else "all orders"
+    return [_table(data, dim, kind, which, title) for dim, kind in kinds if dim in data.dims]
 
 
 def orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
@@ -76,18 +78,22 @@ def orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
     return acceleration(data.angle) if dim == "node" else data.torque
 
 
-def _table(data: xr.Dataset, dim: str, kind: str, orders: xr.DataArray, title: str) -> Table:
+def _table(data: xr.Dataset, dim: str, kind: str, which: str, title: str) -> Table:
+    orders = orders_of(data, dim)
     columns = [Column(dim), Column("of"), Column("peak", kind), Column("at", "speed")]
     rows: list[Sequence[object]] = []
     for place in data[dim].values:
         together = data[f"{kind}_swing"].sel({dim: place}), data[f"{kind}_bound"].sel({dim: place})
-        rows.append([place, "all orders, half peak-to-peak", *_peak(together[0])])
-        rows.append([place, "all orders, sum as a bound", *_peak(together[1])])
+        if data.sizes["order"] > 1:  # one order alone swings by its amplitude
+            rows.append([place, f"{which}, half peak-to-peak", *_peak(together[0])])
+            rows.append([place, f"{which}, sum as a bound", *_peak(together[1])])
         rows += [[place, f"order {n:g}, 0-peak", *told] for n, told in strongest(orders.sel({dim: place}))]
     return Table(f"{kind.capitalize()} at its highest{title}", columns, rows)
 
 
 def _peak(values: xr.DataArray) -> tuple[float, float]:
+    if not np.isfinite(values.values).any():  # an undamped mode met at every speed asked for
+        return np.nan, np.nan
     at = int(values.argmax("speed"))
     return float(values[at]), float(values.speed[at])
 
