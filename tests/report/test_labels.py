@@ -19,12 +19,18 @@ def models(*names: str) -> list[Model]:
         (("truck with a DMF", "truck with a two-stage DMF"), ["DMF", "two-stage DMF"]),
         (("truck", "truck DMF"), ["truck", "truck DMF"]),
         (("truck", "truck"), ["truck (1)", "truck (2)"]),
+        (("My truck", "My truck"), ["My truck (1)", "My truck (2)"]),
         (("truck DMF",), ["truck DMF"]),
         (("", "b"), ["model", "b"]),
     ],
 )
 def test_labels_are_what_tells_models_apart(names: tuple[str, ...], short: list[str]) -> None:
     assert labels(models(*names)) == short
+
+
+def test_copies_of_a_model_are_told_apart_by_their_absorbers() -> None:
+    kinds = ["dual mass flywheel", "power split absorber"]
+    assert labels([Model("My truck", {}, Landmarks(), absorber=kind) for kind in kinds]) == kinds
 
 
 @pytest.mark.parametrize(

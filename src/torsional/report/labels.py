@@ -10,10 +10,16 @@ from torsional.units import QUANTITIES, convert
 
 
 def labels(models: Sequence[Model]) -> list[str]:
-    """What tells models apart: their names without the words that all begin with, numbered if they are the same."""
+    """What tells models apart: their names without the words that all begin with.
+
+    Of models with one name, as copies of a file have, it is their absorbers; what is still the same is numbered.
+    """
     words = [model.name.split() or ["model"] for model in models]
+    alike = len({tuple(w) for w in words}) == 1
+    if alike and all(model.absorber for model in models) and len({model.absorber for model in models}) == len(models):
+        return [model.absorber for model in models]
     common = 0
-    while len(models) > 1 and all(len(w) > common + 1 and w[common] == words[0][common] for w in words):
+    while not alike and all(len(w) > common + 1 and w[common] == words[0][common] for w in words):
         common += 1
     short = [" ".join(w[common:]) for w in words]
     return [f"{name} ({short[: i + 1].count(name)})" if short.count(name) > 1 else name for i, name in enumerate(short)]
