@@ -310,3 +310,27 @@ def test_the_first_modes_are_those_of_a_turning_pendulum(torsional: Run, truck: 
 def test_the_campbell_picture_names_the_modes(torsional: Run, truck: str) -> None:
     assert torsional("campbell", truck, "-o", "c.svg").code == 0
     assert "clutch mode" in Path("c.svg").read_text(encoding="utf-8")
+
+
+TWO_DISCS = """
+name: two discs
+torsional: 1
+engine: {layout: inline-6, bore: 0.131, stroke: 0.158, rod_length: 0.2675, reciprocating_mass: 4.2,
+         compression_ratio: 18.1, firing_order: [1, 5, 3, 6, 2, 4]}
+components:
+  a: {type: inertia, inertia: 1}
+  b: {type: inertia, inertia: 1}
+  s: {type: shaft, a: a, b: b, stiffness: 5000}
+landmarks: {throws: [a], crankshaft: a, load: b, input: b}
+operation: {idle: 100, speed: [100, 200], torque: [0, 500]}
+"""
+
+
+def test_an_undamped_mode_met_exactly_is_told(torsional: Run) -> None:
+    """Two discs of 1 kgm² on 5000 Nm/rad vibrate at 100 rad/s: order 1 meets that at 100 rad/s, order 2 at half."""
+    Path("two.yaml").write_text(TWO_DISCS, encoding="utf-8")
+    for speeds, told in (("100", "at 954.93 rpm, where"), ("50:200:50", "at 477.46 rpm and 1 more, where")):
+        answer = torsional("respond", "two.yaml", "--speed", speeds, "--orders", "1:2:1", "--torque", "500Nm")
+        assert answer.code == 0
+        assert f"an undamped mode is met {told}" in answer.err
+    assert "warning: no part has any damping" in torsional("check", "two.yaml").err

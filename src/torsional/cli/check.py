@@ -55,6 +55,8 @@ def checked_model(model: Model, gear: str, torque: float) -> Document:
     system, point = operated(model, torque, gear or None)
     springs, elastic = list(standing(model, point)), list(first_modes(model, system, inputs.speed(model, "")))
     warnings = [*warnings_of(model), *doubts(elastic, torque, springs)]
+    if not (system.connections.damping.any() or system.connections.loss_factor.any()):
+        warnings.append("no part has any damping: at a resonance the response has no bound")
     return {"summary": summary(model, gear), "equilibrium": springs, "modes": elastic, "warnings": warnings}
 
 

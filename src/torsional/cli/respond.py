@@ -11,6 +11,7 @@ import xarray as xr
 from torsional.cli import inputs
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
+from torsional.cli.failures import complain
 from torsional.cli.modes import in_gear
 from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.request import Request
@@ -53,6 +54,7 @@ def run(
     loaded: object = amount(float(mean[0]), "torque") if torque else "full load"
     settings = {"gear": engaged, "torque": loaded, "orders": data.order.values}
     title = f"{in_gear(engaged)}, " + (show(float(mean[0]), "torque") if torque else "full load")
+    _warn_unsolved(data)
     found, told = tables(data, title, chosen=asked is not None), told_settings(request, **settings)
     answer = Answer("respond", found, told, data, picture=lambda: _picture(data))
     deliver(answer, request)
@@ -71,6 +73,15 @@ def tables(data: xr.Dataset, title: str, chosen: bool = False) -> list[Table]:
     kinds = (("node", "acceleration"), ("element", "torque"))
     which = "orders chosen" if chosen else "all orders"
     return [_table(data, dim, kind, which, title) for dim, kind in kinds if dim in data.dims]
+
+
+def _warn_unsolved(data: xr.Dataset) -> None:
+    found = data.angle if "angle" in data else data.torque
+    speeds = found.speed.values[np.isnan(found.values).any(axis=(1, 2))]
+    if len(speeds):
+        where = show(float(speeds[0]), "speed") + (f" and {len(speeds) - 1} more" if len(speeds) > 1 else "")
+        remedy = "give the parts some damping, or choose other speeds"
+        complain(f"an undamped mode is met at {where}, where no response is finite; {remedy}", kind="warning")
 
 
 def orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
