@@ -21,7 +21,7 @@ Run = Callable[..., Any]
 TRUCK = "truck"
 
 BAD = [
-    (["modes", TRUCK, "--gear", "13"], ["--gear", "'13'", "did you mean"]),
+    (["modes", TRUCK, "--gear", "13"], ["--gear", "'13'", "allowed: 1, 2, 3", "did you mean"]),
     (["respond", TRUCK, "--gear", "all"], ["--gear", "one gear is wanted"]),
     (["modes", TRUCK, "--torque", "1200 rpm"], ["--torque", "rpm is an angular velocity", "Nm"]),
     (["map", TRUCK, "--torque", "900:100Nm"], ["--torque", "above its start"]),

@@ -36,7 +36,8 @@ def gears(model: Model, text: str) -> list[str]:
     for name in named:
         if name not in known:
             remedy = nearest(name, known) if model.gears else "this model has no gears: leave --gear out"
-            raise ModelError(f"there is no gear {units.quoted(name)}", where="--gear", remedy=remedy)
+            allowed = ", ".join(known) if model.gears else ""
+            raise ModelError(f"there is no gear {units.quoted(name)}", where="--gear", allowed=allowed, remedy=remedy)
     return list(dict.fromkeys(named))
 
 
