@@ -41,7 +41,7 @@ class PendulumFields(Block):
 
     mass: Mass
     distance: Length = Field(description="of the pendulums' centre from the axis")
-    order: Order = Field(description="order it is tuned to")
+    order: Order = Field(description="order its path is tuned to, rollers left out")
     damping: Damping = 0.0
     path: Path = "circular"
     rollers: RollersBlock | None = None
