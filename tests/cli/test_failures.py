@@ -165,7 +165,9 @@ def test_control_characters_do_not_reach_the_terminal(torsional: Run) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_ctrl_c_leaves_nothing(truck: str, tmp_path: Path) -> None:
     Path("report.html").write_text("the last one", encoding="utf-8")
-    code = "import sys; from torsional.cli import main; sys.exit(main())"
+    # a shell's background jobs ignore Ctrl-C, and what they start inherits that
+    listen = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{listen}; import sys; from torsional.cli import main; sys.exit(main())"
     line = [sys.executable, "-c", code, "report", truck]
     with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         until = time.monotonic() + 60

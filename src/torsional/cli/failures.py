@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+from torsional.cli.interrupts import listening
 from torsional.errors import TorsionalError
 
 DONE, FAILED, MENDABLE, STOPPED, UNREAD = 0, 1, 2, 130, 141
@@ -25,7 +26,7 @@ def guarded(arguments: Sequence[str] | None) -> int:
     if arguments is None:
         for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):  # read once, when numpy is imported
             os.environ.setdefault(name, "1")
-    with warnings.catch_warnings(), _seldom_collected(ending=arguments is None):
+    with warnings.catch_warnings(), _seldom_collected(ending=arguments is None), listening():
         warnings.showwarning = _show_warning
         try:
             return _run(list(sys.argv[1:] if arguments is None else arguments))

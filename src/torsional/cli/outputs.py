@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
 import tempfile
-import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from torsional.cli.interrupts import uninterrupted
 from torsional.errors import ModelError, nearest
 
 Writer = Callable[[Path], object]
@@ -52,7 +51,7 @@ def written(writers: Mapping[Path, Writer]) -> None:
             except OSError as error:
                 raise _unwritten(path, error) from None
             moves.append((draft, target))
-        with _uninterrupted():
+        with uninterrupted():
             for draft, target in moves:
                 draft.replace(target)
 
@@ -114,16 +113,3 @@ def _settled(draft: Path, target: Path) -> None:
 
 def _unwritten(path: Path, error: OSError) -> ModelError:
     return ModelError("the file cannot be written", file=str(path), found=error.strerror or str(error))
-
-
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Ctrl-C waits for the few moments in which files are moved to their places."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
