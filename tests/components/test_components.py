@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from torsional.components import DistributedShaft, Inertia, Shaft, Vehicle, blocks
+from torsional.components import Coupling, DistributedShaft, Inertia, Shaft, Vehicle, blocks
 from torsional.errors import ModelError
 from torsional.powertrain import Powertrain
 from torsional.system import assemble
@@ -33,3 +33,8 @@ def test_lists_of_the_wrong_length_are_refused() -> None:
         ModelError, match=r"crankshaft\.throw_inertia.*found 3 values; allowed: one number, or a list of 4"
     ):
         blocks.crankshaft(4, [0.1, 0.1, 0.1], 1e6, flange="f", flange_stiffness=1e6)
+
+
+def test_a_coupling_with_a_number_for_a_law_is_refused() -> None:
+    with pytest.raises(ModelError, match=r"law: a force law is wanted; found 13000.0; a plain spring is Hinges"):
+        Coupling("a", "b", 13e3)  # type: ignore[arg-type]

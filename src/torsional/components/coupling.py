@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from torsional.components import checks
+from torsional.errors import ModelError
 from torsional.laws import Hinges, Law
 from torsional.stamps import Connection
 
@@ -26,6 +27,9 @@ class Coupling:
 
     def __post_init__(self) -> None:
         checks.distinct(self.a, self.b)
+        if not isinstance(self.law, Law):
+            remedy = "a plain spring is Hinges(stiffness); stages are Hinges.staged([(up to, stiffness), ...])"
+            raise ModelError("a force law is wanted", where="law", found=repr(self.law), remedy=remedy)
         checks.not_negative(self.damping, "damping", "damping")
 
     def stamps(self, name: str) -> Iterator[Connection]:
