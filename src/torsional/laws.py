@@ -193,6 +193,16 @@ class Hinges(Law):
         ahead = [abs(stop) for stop in self.stops if stop * (torque or 1.0) > 0]
         return max(min(ahead) - abs(angle), 0.0) if ahead else float("nan")
 
+    def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
+        """Whether the stiffness changes between two angles [rad]: a linear response is no more than an approximation.
+
+        >>> Hinges.staged([(100.0, 1e3), (300.0, 4e3)]).changes_within([0.0, 0.05], [0.09, 0.15]).tolist()
+        [False, True]
+        """
+        low, high = np.broadcast_arrays(np.asarray(low, dtype=float), np.asarray(high, dtype=float))
+        edges = np.unique(self.gaps)
+        return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
+
     def angle(self, torque: ArrayLike) -> Array:
         """The relative angle [rad] at which a torque [Nm] is carried; in a free range, its middle.
 

@@ -16,12 +16,14 @@ from torsional.cli.modes import in_gear
 from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
+from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.quantities import acceleration
+from torsional.quantities import acceleration, swing
 from torsional.solvers.campbell import full_load
 from torsional.solvers.map import HALF_ORDERS
 from torsional.solvers.run_up import run_up_response
+from torsional.system import assemble
 from torsional.units import show
 
 if TYPE_CHECKING:
@@ -64,7 +66,9 @@ def response(
     model: Model, gear: str, speeds: Array, torques: Array, orders: Array, nodes: Sequence[str], elements: Sequence[str]
 ) -> xr.Dataset:
     """`run_up_response` at some places, and of all orders `together` the swings over speed beside their bounds."""
-    found = run_up_response(model, speeds, torques, gear or None, orders).sel(node=list(nodes), element=list(elements))
+    found = run_up_response(model, speeds, torques, gear or None, orders)
+    _warn_crossed(model, gear, found)
+    found = found.sel(node=list(nodes), element=list(elements))
     return without_empty(found.drop_vars(("twist", "mean_twist")).assign(together(found.angle, found.torque)))
 
 
@@ -73,6 +77,19 @@ def tables(data: xr.Dataset, title: str, chosen: bool = False) -> list[Table]:
     kinds = (("node", "acceleration"), ("element", "torque"))
     which = "orders chosen" if chosen else "all orders"
     return [_table(data, dim, kind, which, title) for dim, kind in kinds if dim in data.dims]
+
+
+def _warn_crossed(model: Model, gear: str, found: xr.Dataset) -> None:
+    """Say where a spring's swing runs across a stage, its free play or its stop."""
+    c = assemble(model.powertrain(gear or None)).connections
+    for name, law in zip(c.names, c.laws, strict=True):
+        if isinstance(law, Hinges):
+            mean, half = found.mean_twist.sel(element=name), swing(found.twist.sel(element=name))
+            at = found.speed.values[law.changes_within(mean - half, mean + half)]
+            if len(at):
+                span = show(float(at[0]), "speed") + (f" to {show(float(at[-1]), 'speed')}" if len(at) > 1 else "")
+                told = "swings across a change of its stiffness, where the linear response is an approximation"
+                complain(f"{name} {told}: {span}", kind="warning")
 
 
 def _warn_unsolved(data: xr.Dataset) -> None:

@@ -78,6 +78,7 @@ def plot_energy_shares(
     largest = share.max("mode")
     order = np.argsort(-largest.values, kind="stable")
     told = [str(share.element.values[i]) for i in order if float(largest[i]) >= 0.08][:10]
+    told.sort(key=list(share.element.values).index)
     figure, drawn = style.on(axes, (7.0, 1.4 + 0.36 * len(rows)))
     left = np.zeros(len(rows))
     for number, element in enumerate(told):
