@@ -14,9 +14,11 @@ EXPECTED: dict[str, dict[Any, float]] = {
     "01_first_look": {"clutch_mode": 38.43},
     # the stiffer the damper the higher the mode; 654 rpm at 25 kNm/rad by an independent prototype
     "02_softer_clutch": {25.0: 654.1},
+    # eigh of the three-disc chain written by hand, the discs behind the gear divided by its ratio squared
     "03_parts_by_hand": {"500 Nm": 12.10, "1500 Nm": 19.21},
-    "04_two_flywheels_compared": {"median": 0.16},
-    "05_maps_as_a_picture": {"median": 0.11},
+    # the two medians are this program's own figures: they guard against a change, not against wrong physics
+    "04_two_flywheels_compared": {"median": 0.15907},
+    "05_maps_as_a_picture": {"median": 0.10825},
 }
 
 
@@ -38,5 +40,5 @@ def test_example(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     spec.loader.exec_module(module)
     found = module.main()
     for key, value in EXPECTED[name].items():
-        assert found[key] == pytest.approx(value, rel=0.05 if name[:2] in ("04", "05") else 5e-4)
+        assert found[key] == pytest.approx(value, rel=5e-4)
     assert capsys.readouterr().out.strip()
