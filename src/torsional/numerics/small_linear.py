@@ -1,0 +1,100 @@
+"""Dense linear equations of a few dozen unknowns inside compiled code, where a call to LAPACK costs more than the work."""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+
+from torsional.numerics.arrays import Array, ComplexArray, IntArray
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def factor(a: Array, order: IntArray) -> float:
+    """LU factors in place with row exchanges in ``order``; the sign of the determinant, 0 for a singular matrix."""
+    n, sign = a.shape[0], 1.0
+    for k in range(n):
+        best, largest = k, abs(a[k, k])
+        for i in range(k + 1, n):
+            if abs(a[i, k]) > largest:
+                best, largest = i, abs(a[i, k])
+        order[k] = best
+        if not largest > 0.0:
+            return 0.0
+        if best != k:
+            sign = -sign
+            for j in range(n):
+                a[k, j], a[best, j] = a[best, j], a[k, j]
+        if a[k, k] < 0.0:
+            sign = -sign
+        inverse = 1.0 / a[k, k]
+        row = a[k]
+        for i in range(k + 1, n):
+            factor_ = a[i, k] * inverse
+            a[i, k] = factor_
+            if factor_ != 0.0:
+                target = a[i]
+                for j in range(k + 1, n):
+                    target[j] -= factor_ * row[j]
+    return sign
+
+
+@numba.njit(cache=True, error_model="numpy")
+def backsolve(a: Array, order: IntArray, b: Array) -> None:
+    """Solve in place for one right-hand side with the factors of `factor`."""
+    n = a.shape[0]
+    for k in range(n):
+        b[k], b[order[k]] = b[order[k]], b[k]
+    for i in range(1, n):
+        for k in range(i):
+            b[i] -= a[i, k] * b[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            b[k] -= a[k, j] * b[j]
+        b[k] /= a[k, k]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def scaled_determinant(a: Array, order: IntArray) -> float:
+    """Determinant over the product of the row norms: of order one, it passes through zero as the determinant does."""
+    n, norms = a.shape[0], 0.0
+    for i in range(n):
+        norms += np.log(np.sqrt((a[i] * a[i]).sum()))
+    sign = factor(a, order)
+    if sign == 0.0:
+        return 0.0
+    size = 0.0
+    for i in range(n):
+        size += np.log(abs(a[i, i]))
+    return float(sign * np.exp(size - norms))
+
+
+@numba.njit(cache=True, error_model="numpy")
+def complex_solve(a: ComplexArray, b: ComplexArray) -> bool:
+    """Solve a x = b in place for the columns of b, by elimination with row exchanges; whether it could be done."""
+    n, columns = a.shape[0], b.shape[1]
+    for k in range(n):
+        best, largest = k, abs(a[k, k])
+        for i in range(k + 1, n):
+            if abs(a[i, k]) > largest:
+                best, largest = i, abs(a[i, k])
+        if not largest > 0.0:
+            return False
+        if best != k:
+            for j in range(k, n):
+                a[k, j], a[best, j] = a[best, j], a[k, j]
+            for j in range(columns):
+                b[k, j], b[best, j] = b[best, j], b[k, j]
+        for i in range(k + 1, n):
+            if a[i, k] != 0.0:
+                ratio = a[i, k] / a[k, k]
+                for j in range(k + 1, n):
+                    a[i, j] -= ratio * a[k, j]
+                for j in range(columns):
+                    b[i, j] -= ratio * b[k, j]
+    for k in range(n - 1, -1, -1):
+        for j in range(columns):
+            for i in range(k + 1, n):
+                b[k, j] -= a[k, i] * b[i, j]
+            b[k, j] /= a[k, k]
+    return True

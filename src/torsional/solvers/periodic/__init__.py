@@ -1,0 +1,7 @@
+"""Periodic steady states of systems with force laws."""
+
+from torsional.solvers.periodic.load import Load
+from torsional.solvers.periodic.machine import model_response
+from torsional.solvers.periodic.response import Variation, periodic_response
+
+__all__ = ["Load", "Variation", "model_response", "periodic_response"]

@@ -1,0 +1,235 @@
+"""Branches of periodic solutions and how they hang together: traced, and left for others at their bifurcations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from torsional.numerics.arrays import Array
+from torsional.numerics.continuation import FOLD, End, Point, Settings, Trace, both_ways, followed
+from torsional.solvers.periodic.problem import JOINED, HarmonicProblem, Setting, WatchedProblem
+from torsional.solvers.periodic.start import first_solution
+
+MAIN, DOUBLED, BROKEN, CROSSED, ISOLATED = "main", "period doubling", "symmetry breaking", "crossing", "isolated"
+TRACING = Settings(first_step=0.01, largest_step=0.1, largest_angle=0.35, most_points=2000)
+DEPART = 0.02
+"""First step onto a branch that leaves another, in scaled angles."""
+NEAR = 1e-3
+"""Scaled distance from where a branch joins another within which nothing more is looked for."""
+ALIKE = 1e-6
+"""Scaled distance below which two points are the same."""
+
+
+@dataclass(eq=False)
+class Branch:
+    """One branch: its points in order, where it comes from and why it ends."""
+
+    kind: str
+    problem: HarmonicProblem
+    points: tuple[Point, ...]
+    started: str
+    ended: str
+    parent: tuple[int, int] = (-1, -1)
+    """Number of the branch it leaves, and of the event there."""
+
+    @property
+    def base_order(self) -> float:
+        """Order of which its harmonics are multiples."""
+        return self.problem.base_order
+
+    @property
+    def events(self) -> list[Point]:
+        """Its bifurcations."""
+        ends = [point.z for point in self.points if point.event == JOINED]
+        return [
+            point
+            for point in self.points
+            if point.event
+            and point.event != JOINED
+            and not any(np.abs(point.z - end).max() < NEAR for end in ends)
+        ]
+
+    @property
+    def scaled(self) -> Array:
+        """Scaled points (points, n + 1)."""
+        return np.array([point.z for point in self.points])
+
+    @property
+    def values(self) -> Array:
+        """The parameter along it."""
+        return np.array([point.parameter for point in self.points])
+
+
+@dataclass(eq=False)
+class Explorer:
+    """Follows the main branch of a setting over a span, and all that leave it up to a ``depth`` of departures."""
+
+    setting: Setting
+    base_order: float
+    span: tuple[float, float]
+    settings: Settings = TRACING
+    depth: int = 2
+    branches: list[Branch] = field(default_factory=list)
+    make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
+
+    def problem(self, base_order: float) -> HarmonicProblem:
+        """The problem in multiples of a base order."""
+        return self.make(self.setting, base_order)
+
+    def explored(self) -> list[Branch]:
+        """All branches that hang together with the main one."""
+        self.main()
+        number = 0
+        while number < len(self.branches):
+            if self._generation(number) < self.depth:
+                for place, event in enumerate(self.branches[number].events):
+                    self._leave(number, place, event)
+            number += 1
+        return self.branches
+
+    def main(self) -> None:
+        """The main branch from the lower end of the span; from the upper end too where the first does not get there."""
+        problem = self.problem(self.base_order)
+        low, high = self.span
+        for value, direction in ((low, 1), (high, -1)):
+            start = first_solution(problem, value)
+            if self.known(problem, start):
+                continue
+            trace = followed(problem, start, direction, self.span, self.settings)
+            self._add(MAIN, problem, trace, "started at an end of the range")
+
+    def isolated(self, problem: HarmonicProblem, start: Array) -> bool:
+        """Add the branch through a scaled solution that lies on none of those known; whether it was a new one."""
+        if self.known(problem, start):
+            return False
+        trace = both_ways(problem, start, self.span, self.settings)
+        if len(trace.points) < 2:
+            return False
+        began = trace.began.advice if trace.began else End.CLOSED.advice
+        self._add(ISOLATED, problem, trace, began)
+        return True
+
+    def known(self, problem: HarmonicProblem, z: Array) -> bool:
+        """Whether a scaled solution lies on a known branch, be it moved by periods of the excitation or mirrored."""
+        return any(_passes(branch, problem, z) for branch in self.branches)
+
+    def _generation(self, number: int) -> int:
+        count = 0
+        while self.branches[number].parent[0] >= 0:
+            number, count = self.branches[number].parent[0], count + 1
+        return count
+
+    def _leave(self, number: int, place: int, event: Point) -> None:
+        branch = self.branches[number]
+        if event.event == "period doubling":
+            self._double(branch, (number, place), event)
+        elif event.event == "branch point":
+            self._cross(branch, (number, place), event)
+
+    def _double(self, branch: Branch, origin: tuple[int, int], event: Point) -> None:
+        """Follow the branch of twice the period from where it leaves to where it joins again, or as far as it goes."""
+        problem = self.problem(0.5 * branch.base_order)
+        if self._joined(problem, event):
+            return
+        watched = WatchedProblem.of_odd(problem)
+        null = np.linalg.svd(branch.problem.half_order_block(event.z))[2][-1]
+        harmonics = branch.problem.harmonics_of(event.z)
+        wide = np.zeros((harmonics.shape[0], 2 * harmonics.shape[1] - 1), dtype=complex)
+        wide[:, ::2] = harmonics
+        start = problem.point_of(wide, event.parameter)
+        heading = np.zeros_like(start)
+        heading[watched.watched] = null[: int(watched.watched.sum())]
+        self._depart(DOUBLED, problem, watched, start, heading, origin)
+
+    def _cross(self, branch: Branch, origin: tuple[int, int], event: Point) -> None:
+        """Follow the branch that crosses another at a branch point, to both sides unless they mirror each other."""
+        _, jacobian, slope, _ = branch.problem.linearised(event.z)
+        scale, problem = branch.problem.scale, branch.problem
+        rows = np.column_stack([jacobian * scale[:-1], slope * scale[-1]]) / scale[:-1, None]
+        null = np.linalg.svd(np.vstack([rows, event.tangent]))[2][-1]
+        part = np.abs(null) > 1e-5 * np.abs(null).max()
+        if np.abs(event.z[part]).max() < 1e-5 and not part[-1]:
+            if not self._joined(problem, event):
+                self._depart(BROKEN, problem, WatchedProblem(problem, part), event.z, null, origin)
+            return
+        for side in (1.0, -1.0):
+            self._depart(CROSSED, problem, None, event.z, side * null, origin)
+
+    def _joined(self, problem: HarmonicProblem, event: Point) -> bool:
+        """Whether a branch that was followed before ended at this bifurcation."""
+        ends = (branch.points[-1] for branch in self.branches if branch.base_order == problem.base_order)
+        return any(
+            end.event == JOINED and abs(end.parameter - event.parameter) <= 1e-4 * abs(self.span[1] - self.span[0])
+            for end in ends
+        )
+
+    def _depart(
+        self,
+        kind: str,
+        problem: HarmonicProblem,
+        watched: WatchedProblem | None,
+        start: Array,
+        heading: Array,
+        origin: tuple[int, int],
+    ) -> None:
+        heading = heading / np.linalg.norm(heading)
+        for step in (DEPART, 0.25 * DEPART, 4.0 * DEPART):
+            found = problem.correct(start + step * heading, heading)
+            if found.converged and self.span[0] <= found.z[-1] * problem.scale[-1] <= self.span[1]:
+                break
+        else:
+            return
+        if kind == CROSSED and self.known(problem, found.z):
+            return
+        settings = replace(self.settings, terminal=(JOINED,) if watched else ())
+        trace = followed(watched or problem, found.z, 1, self.span, settings, heading=heading)
+        told = f"left branch {origin[0]} at a {'period doubling' if kind == DOUBLED else 'branch point'}"
+        self._add(kind, problem, trace, told, origin)
+
+    def _add(
+        self, kind: str, problem: HarmonicProblem, trace: Trace, started: str, parent: tuple[int, int] = (-1, -1)
+    ) -> None:
+        ended = "joined the branch it left, or its copy" if trace.end is End.TERMINAL else trace.end.advice
+        if trace.points:
+            self.branches.append(Branch(kind, problem, trace.points, started, ended, parent))
+
+
+def _passes(branch: Branch, problem: HarmonicProblem, z: Array) -> bool:
+    """Whether a branch passes through a scaled point, up to a shift of the time by periods of the excitation."""
+    if branch.base_order != problem.base_order:
+        return False
+    value = z[-1]
+    for copy in copies(problem, z):
+        for start, end in _around(branch, value):
+            share = (value - start.z[-1]) / (end.z[-1] - start.z[-1])
+            guess = start.z + share * (end.z - start.z)
+            reach = 0.5 * float(np.abs(end.z - start.z).max()) + ALIKE
+            if np.abs(guess - copy).max() > reach:
+                continue
+            found = problem.at(guess, float(value * problem.scale[-1]))
+            if found.converged and np.abs(found.z - copy).max() <= 1e3 * ALIKE:
+                return True
+    return False
+
+
+def copies(problem: HarmonicProblem, z: Array) -> Iterator[Array]:
+    """The point itself, and of a sub-harmonic one those moved in time by whole periods of the excitation."""
+    yield z
+    harmonics = problem.harmonics_of(z)
+    times = round(problem.setting.load.base_order / problem.base_order)
+    for shift in range(1, times):
+        turns = np.exp(2j * np.pi * shift * np.arange(harmonics.shape[1]) / times)
+        yield problem.point_of(harmonics * turns, float(z[-1] * problem.scale[-1]))
+
+
+def _around(branch: Branch, value: float) -> Iterator[tuple[Point, Point]]:
+    for start, end in zip(branch.points[:-1], branch.points[1:], strict=True):
+        if (start.z[-1] - value) * (end.z[-1] - value) <= 0 and start.z[-1] != end.z[-1]:
+            yield start, end
+
+
+def folds(branch: Branch) -> list[Point]:
+    """The folds of a branch."""
+    return [point for point in branch.points if point.event == FOLD]

@@ -1,0 +1,220 @@
+"""From a system with laws and a load to the arrays of the compiled harmonic balance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.laws import Hinges, Law
+from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.balance_data import Balance
+from torsional.numerics.hinge_spectrum import scan_table
+from torsional.numerics.null_space import null_vectors
+from torsional.numerics.pole_residues import PoleResidues, pole_residues
+from torsional.solvers.periodic.load import Load
+from torsional.system import System
+
+MOST_CONNECTIONS = 12
+SMOOTH_SAMPLES, REMEMBERING_SAMPLES = 256, 512
+TRUSTED = 1e-9
+"""Largest relative difference between pole–residue sums and a direct solve before the latter takes over."""
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """A system parted into a linear one, with reference springs and dampers in place of its laws, and those laws."""
+
+    system: System
+    speed: float
+    """Mean speed [rad/s] at which switched inertias are settled."""
+    kin: Split | None = None
+    """A system of the same connections whose references are taken, and its linear part where it is the same."""
+
+    def __post_init__(self) -> None:
+        count = len(self.laws)
+        if not 1 <= count <= MOST_CONNECTIONS:
+            allowed = f"1 to {MOST_CONNECTIONS}"
+            raise ModelError(
+                "the system has no connection with a law that bends" if not count else "too many connections have a law",
+                found=f"{count} of them",
+                allowed=allowed,
+                remedy="a linear system is a matter for harmonic_response" if not count else "replace some by springs",
+            )
+        if self.kin is not None:
+            self.__dict__ |= {name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")}
+            if self.system.shares_linear_part(self.kin.system):
+                self.__dict__ |= {name: getattr(self.kin, name) for name in ("matrices", "poles", "rigid")}
+
+    @cached_property
+    def places(self) -> tuple[int, ...]:
+        """Numbers of the connections with a law."""
+        return tuple(i for i, law in enumerate(self.system.connections.laws) if law is not None)
+
+    @cached_property
+    def laws(self) -> tuple[Law, ...]:
+        """Their laws."""
+        return tuple(law for law in self.system.connections.laws if law is not None)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(self.system.connections.names[i] for i in self.places)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Their directions (m, N)."""
+        return self.system.connections.weights[list(self.places)]
+
+    @cached_property
+    def reference_stiffness(self) -> Array:
+        """Reference springs (m,) [Nm/rad]: any positive value gives the same motions; the softest stage is taken."""
+        return np.array([_reference(law) for law in self.laws])
+
+    @cached_property
+    def reference_damping(self) -> Array:
+        """Reference dampers (m,) [Nms/rad], which keep undamped poles off the path."""
+        return 1e-3 * self.reference_stiffness
+
+    @cached_property
+    def matrices(self) -> Array:
+        """M, C, K, H, S (5, N, N), the references in them."""
+        s, w = self.system.switched(self.speed), self.weights
+        stiff, damp = ((w.T * v) @ w for v in (self.reference_stiffness, self.reference_damping))
+        return np.stack([s.M, s.C + damp, s.K + stiff, s.H, s.S])
+
+    @cached_property
+    def poles(self) -> PoleResidues | None:
+        """Poles and residues, unless the matrices vary with speed, are hysteretic, or poles all but coincide."""
+        c, m = self.system.connections, self.system.switched(self.speed).masses
+        if (c.loss_factor * c.stiffness).any() or c.centrifugal_stiffness.any():
+            return None
+        found = pole_residues(
+            np.vstack([c.weights, self.weights]),
+            np.concatenate([c.stiffness, self.reference_stiffness]),
+            np.concatenate([c.damping, self.reference_damping]),
+            m.weights,
+            m.inertia,
+        )
+        return found if self._agrees(found) else None
+
+    def _agrees(self, found: PoleResidues) -> bool:
+        mass, damping, stiffness = self.matrices[:3]
+        w, largest = self.weights, np.sqrt(np.abs(found.poles).max(initial=1.0))
+        for omega in (0.3 * largest, largest, 1.1 * largest):
+            direct = w @ np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, w.T)
+            summed = found.receptance(1j * omega, w, w)
+            if not np.abs(summed - direct).max() <= TRUSTED * np.abs(direct).max():
+                return False
+        return True
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Rotations (N, r) that no spring and no law holds back."""
+        return null_vectors(self._elastic)
+
+    @property
+    def _elastic(self) -> Array:
+        c = self.system.connections
+        return np.vstack([c.weights[c.stiffness > 0], self.weights[self.reference_stiffness > 0]])
+
+    def deflection(self, onto: Array) -> Array:
+        """Static coordinates (loads, N) for balanced loads on them, without rigid rotation."""
+        held = self.matrices[2] + self.rigid @ self.rigid.T * np.abs(self.matrices[2]).max()
+        return np.asarray(np.linalg.solve(held, onto.T).T)
+
+    def twist(self, onto: Array) -> Array:
+        """Static angles W K⁻¹ (m, loads) of the connections with laws for balanced loads (loads, N)."""
+        return np.asarray(self.weights @ self.deflection(onto).T)
+
+    def balanced(self, onto: Array, hold: str) -> Array:
+        """Loads (loads, N) with the reaction at ``hold`` that leaves no work on the rigid rotations."""
+        if not self.rigid.size:
+            return onto
+        work = onto @ self.rigid
+        if not hold:
+            if np.abs(work).max(initial=0.0) > 0:
+                raise ModelError(
+                    "the mean torque needs a node that takes it up", where="hold", remedy="name it: hold='vehicle'"
+                )
+            return onto
+        held = self.system.T[self.system.node_index(hold)]
+        along = held @ self.rigid
+        if not along.any():
+            raise ModelError(f"node '{hold}' does not turn and takes up no mean torque", where=hold)
+        return np.asarray(onto - np.outer(work @ along / (along @ along), held))
+
+
+def _reference(law: Law) -> float:
+    """A stiffness of the law's own size: its softest stage that is not free, or its steepest slope near rest."""
+    if isinstance(law, Hinges):
+        slopes = law.tangent(law._between())
+        return float(slopes[slopes > 0].min(initial=np.inf)) if (slopes > 0).any() else 1.0
+    slopes = np.asarray(law.tangent(np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 9)])))
+    return float(slopes[0] if slopes[0] > 0 else slopes.max(initial=0.0))
+
+
+def balance(
+    split: Split,
+    load: Load,
+    base_order: float,
+    harmonics: int,
+    scale: Array,
+    *,
+    hold: str = "",
+    speed: float | None = None,
+    half_orders: int = 0,
+    samples: int = 0,
+) -> Balance:
+    """The compiled balance of a split system; with ``speed`` [rad/s] the parameter is another quantity than speed."""
+    onto = split.system.T[[split.system.node_index(node) for node in load.nodes]]
+    carried = split.twist(split.balanced(onto, hold) if np.abs(load.order(0.0)).max() > 0 else onto)
+    orders = base_order * np.arange(harmonics + 1)
+    torque = np.stack([load.order(n) for n in orders], axis=2)
+    poles = split.poles
+    modal: ComplexArray = torque @ (onto @ poles.shapes.T) if poles else np.zeros((1, 4, 1, 0), complex)
+    law_values, law_start, address, remembers = packed(split.laws)
+    return Balance(
+        base_order=float(base_order),
+        fixed_speed=float(speed or 0.0),
+        by_speed=int(speed is None),
+        breaks=np.ascontiguousarray(load.breaks, dtype=float),
+        poles=np.ascontiguousarray(poles.poles) if poles else np.zeros(0, complex),
+        left=np.ascontiguousarray(poles.shapes @ split.weights.T) if poles else np.zeros((0, 0), complex),
+        modal_load=np.ascontiguousarray(modal),
+        matrices=np.ascontiguousarray(split.matrices),
+        weights=np.ascontiguousarray(split.weights),
+        node_load=np.ascontiguousarray(torque @ onto),
+        loaded=np.array([int(np.abs(torque[:, :, h]).max() > 0) for h in range(harmonics + 1)]),
+        static=np.ascontiguousarray(split.twist(split.weights)),
+        static_load=np.ascontiguousarray(torque[:, :, 0].real @ carried.T),
+        reference_stiffness=split.reference_stiffness,
+        reference_damping=split.reference_damping,
+        law_values=law_values,
+        law_start=law_start,
+        address=address,
+        remembers=remembers,
+        half_orders=half_orders,
+        table=scan_table(harmonics, samples or _samples(split.laws, harmonics)),
+        scale=np.ascontiguousarray(scale, dtype=float),
+    )
+
+
+def packed(laws: Sequence[Law]) -> tuple[Array, Array, Array, Array]:
+    """Parameters of all laws in a row with their starts, addresses of their kernels (0: hinges), whether they remember."""
+    values = [law.parameters for law in laws]
+    starts = np.concatenate([[0], np.cumsum([v.size for v in values])])
+    address = [0 if isinstance(law, Hinges) else law.address for law in laws]
+    remembers = [int(getattr(law, "remembers", False)) for law in laws]
+    return np.concatenate(values), *(np.asarray(v, dtype=np.int64) for v in (starts, address, remembers))
+
+
+def _samples(laws: Sequence[Law], harmonics: int) -> int:
+    """Samples a period: as few as find the crossings of hinges, many where a law is sampled."""
+    if all(isinstance(law, Hinges) for law in laws):
+        return 0
+    least = REMEMBERING_SAMPLES if any(getattr(law, "remembers", False) for law in laws) else SMOOTH_SAMPLES
+    return max(least, 1 << (16 * harmonics - 1).bit_length())

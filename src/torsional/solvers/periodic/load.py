@@ -1,0 +1,106 @@
+"""The load of a periodic analysis: torque harmonics at nodes as a piecewise cubic of the continued parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.engine import Excitation
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, ComplexArray
+
+NEGLIGIBLE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Load:
+    """Complex 0-peak torque harmonics [Nm] of ``orders`` at ``nodes``, order 0 the mean, over a parameter.
+
+    Piece i holds between ``breaks`` i and i + 1: Σ_d ``coefficients`` (pieces, 4, nodes, orders) (p − break)^d.
+    """
+
+    nodes: tuple[str, ...]
+    orders: Array
+    breaks: Array
+    coefficients: ComplexArray
+
+    @classmethod
+    def through(cls, nodes: Sequence[str], orders: ArrayLike, values: ArrayLike, torque: ArrayLike) -> Load:
+        """The cubic spline through torques (values, nodes, orders) at rising ``values`` of the parameter."""
+        from scipy.interpolate import CubicSpline  # imported where used: half of the analyses need none
+
+        at, given = np.atleast_1d(np.asarray(values, dtype=float)), np.asarray(torque, dtype=complex)
+        if at.size < 4:
+            return cls.polynomial(nodes, orders, at, given)
+        spline = CubicSpline(at, given, axis=0)
+        return cls(tuple(nodes), np.asarray(orders, dtype=float), at, np.moveaxis(spline.c, 1, 0)[:, ::-1])
+
+    @classmethod
+    def polynomial(cls, nodes: Sequence[str], orders: ArrayLike, values: Array, torque: ComplexArray) -> Load:
+        """The parabola, line or constant through three, two or one value."""
+        powers = np.vander(values - values[0], increasing=True)
+        c = np.zeros((1, 4, *torque.shape[1:]), dtype=complex)
+        c[0, : values.size] = np.linalg.solve(powers, torque.reshape(values.size, -1)).reshape(torque.shape)
+        ends = np.array([values[0], max(values[-1], values[0] + 1.0)])
+        return cls(tuple(nodes), np.asarray(orders, dtype=float), ends, c)
+
+    @classmethod
+    def over_speed(cls, excitation: Excitation) -> Load:
+        """An excitation over the speeds it has; of a single speed it holds for every one."""
+        at = np.atleast_1d(excitation.speed)
+        torque = excitation.torque.reshape(at.size, len(excitation.nodes), -1)
+        return cls.through(excitation.nodes, excitation.orders, at, torque)
+
+    @classmethod
+    def over_amplitude(cls, excitation: Excitation) -> Load:
+        """One operating point with every order above 0 times the parameter."""
+        mean, varied = _split(excitation)
+        return cls.polynomial(excitation.nodes, excitation.orders, np.array([0.0, 1.0]), np.stack([mean, mean + varied]))
+
+    @classmethod
+    def over_mean_torque(cls, excitation: Excitation) -> Load:
+        """One operating point with its mean torques in proportion, their sum being the parameter [Nm]."""
+        mean, varied = _split(excitation)
+        total = mean.sum().real
+        if not total:
+            raise ModelError(
+                "without a mean torque there is no place for more of it", where="excitation", remedy="give order 0"
+            )
+        return cls.polynomial(
+            excitation.nodes, excitation.orders, np.array([0.0, total]), np.stack([varied, mean + varied])
+        )
+
+    def at(self, value: float) -> ComplexArray:
+        """Torques (nodes, orders) at one value of the parameter."""
+        piece = int(np.clip(np.searchsorted(self.breaks, value, "right") - 1, 0, len(self.coefficients) - 1))
+        powers = (value - self.breaks[piece]) ** np.arange(4)
+        return np.asarray(np.tensordot(powers, self.coefficients[piece], axes=1))
+
+    def order(self, order: float) -> ComplexArray:
+        """Coefficients of one order (pieces, 4, nodes), zero where the load has none of it."""
+        at = np.flatnonzero(np.abs(self.orders - order) < 1e-9)
+        shape = self.coefficients.shape[:3]
+        return self.coefficients[..., at[0]] if at.size else np.zeros(shape, dtype=complex)
+
+    @property
+    def base_order(self) -> float:
+        """The largest order of which all that count are multiples, in steps of a quarter order."""
+        size = np.abs(self.coefficients[:, 0]).max(axis=(0, 1))
+        counts = (self.orders > 0) & (size > NEGLIGIBLE * size[self.orders > 0].max(initial=0.0))
+        if not counts.any():
+            raise ModelError("nothing but a mean torque acts", where="excitation", remedy="give orders above 0")
+        return float(np.gcd.reduce(np.round(self.orders[counts] * 4).astype(int))) / 4
+
+
+def _split(excitation: Excitation) -> tuple[ComplexArray, ComplexArray]:
+    """Mean torques and the rest (nodes, orders) of an excitation at one operating point."""
+    if np.size(excitation.speed) != 1:
+        raise ModelError(
+            "one operating point is wanted", where="excitation", found=f"{np.size(excitation.speed)} speeds"
+        )
+    torque = excitation.torque.reshape(len(excitation.nodes), -1)
+    mean = np.where(excitation.orders == 0, torque, 0.0)
+    return mean, torque - mean

@@ -1,0 +1,110 @@
+"""Periodic response of a described machine under its engine."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from torsional.engine import Engine
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.campbell import full_load
+from torsional.solvers.operating import torque_places
+from torsional.solvers.periodic.load import Load
+from torsional.solvers.periodic.response import HIGHEST_ORDER, periodic_response
+from torsional.system import assemble
+
+ACROSS = 1e-6
+SPEEDS, TORQUES = 9, 65
+"""Operating points that the engine is asked for: over speed it is a parabola, over torque it has corners."""
+
+
+def model_response(
+    model: Model,
+    speed: tuple[float, float] | None = None,
+    torque: float | None = None,
+    gear: str | int | None = None,
+    *,
+    highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+    depth: int = 2,
+    stability: bool = True,
+) -> xr.Dataset:
+    """`periodic_response` of a ``model`` in one ``gear`` over a range of ``speed`` [rad/s] at one mean engine
+    ``torque`` [Nm], or at full load where that is None.
+
+    Of the engine's orders those are taken that its cylinders have in common (every third of an evenly fired six), since
+    on a stiff crankshaft the others cancel; with ``base_order`` 0.5 all are, and what was a bifurcation to twice the
+    period is then rounded off by the small excitation at its own order.
+    Raises ModelError for a model without engine, without laws, or that does not say where torque enters and leaves.
+    """
+    low, high = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
+    load = engine_load(model, (low, high), torque, highest_order, base_order)
+    data = periodic_response(
+        assemble(model.powertrain(gear or None)),
+        load,
+        (low, high),
+        hold=model.landmarks.load,
+        highest_order=highest_order,
+        base_order=base_order or load.base_order,
+        depth=depth,
+        stability=stability,
+    )
+    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+
+
+def common_order(model: Model, speed: float, torque: float) -> float:
+    """The largest order of which all torques that act on a stiff crankshaft are multiples."""
+    engine = checked_engine(model)
+    orders = np.arange(0.5, 12.5, 0.5)
+    lumped = engine.harmonics(speed, torque, orders).sum(axis=-2)
+    sizes = np.abs(lumped)
+    counts = orders[sizes > ACROSS * sizes.max()]
+    return float(np.gcd.reduce(np.round(2 * counts).astype(int))) / 2
+
+
+def checked_engine(model: Model) -> Engine:
+    """The engine of a model that has one and says where its torque goes."""
+    if model.engine is None:
+        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    torque_places(model)
+    return model.engine
+
+
+def engine_load(
+    model: Model,
+    speed: tuple[float, float],
+    torque: float | None,
+    highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+) -> Load:
+    """The engine's load over speed at one mean torque [Nm], or along full load."""
+    engine = checked_engine(model)
+    speeds = np.linspace(*speed, SPEEDS) if torque is not None else _knots(model, speed)
+    torques = np.full(len(speeds), torque) if torque is not None else full_load(model, speeds)
+    base = base_order or common_order(model, float(speeds.mean()), float(torques.mean()))
+    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    found = engine.excitation(model.landmarks.throws, speeds, torques, orders)
+    return Load.over_speed(found)
+
+
+def engine_torque_load(
+    model: Model, speed: float, torque: tuple[float, float], highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+) -> Load:
+    """The engine's load over mean torque [Nm] at one speed [rad/s]."""
+    engine = checked_engine(model)
+    torques = np.linspace(*torque, TORQUES)
+    base = base_order or common_order(model, speed, float(torques.mean()))
+    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    found = engine.excitation(model.landmarks.throws, speed, torques, orders)
+    return Load.through(found.nodes, orders, torques, found.torque)
+
+
+def _knots(model: Model, speed: tuple[float, float]) -> Array:
+    """Speeds that include the corners of the full-load curve, close to each other on both sides of them."""
+    curve = model.engine.full_load if model.engine else None
+    corners = np.asarray(curve.speeds) if curve is not None else np.zeros(0)
+    near = np.concatenate([corners - 0.05, corners, corners + 0.05, np.linspace(*speed, 81)])
+    return np.unique(np.clip(near, *speed))

@@ -1,0 +1,104 @@
+"""A first solution at one value of the parameter, without anybody's guess.
+
+The linear answer about the static state comes first, which is the first Newton step from there.  Where Newton's method
+does not follow it, the vibration is raised from nothing to its full amplitude by continuation, then the laws are bent
+from straight springs to what they are, then the mean torque is brought from above to where it belongs.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array
+from torsional.numerics.continuation import Settings, followed
+from torsional.solvers.equilibrium import equilibrium
+from torsional.solvers.periodic.load import Load
+from torsional.solvers.periodic.problem import HarmonicProblem, Setting
+
+HOMOTOPY = Settings(first_step=0.05, largest_step=0.3, most_points=400)
+
+
+def first_solution(problem: HarmonicProblem, value: float) -> Array:
+    """A scaled solution at a physical ``value`` of the parameter.
+
+    Raises ModelError with the last good point and what to try where no way leads to one.
+    """
+    ways: tuple[Callable[[HarmonicProblem, float], Iterator[Array]], ...] = (_linear, _raised, _lighter)
+    reached = ""
+    for way in ways:
+        for guess in way(problem, value):
+            found = problem.at(guess, value)
+            if found.converged:
+                return found.z
+            reached = f"{way.__name__.strip('_')} start"
+    raise ModelError(
+        "no periodic solution was found to start from",
+        where=f"parameter {value:g}",
+        found=f"the last try was a {reached or 'static state'}",
+        remedy="start from the other end of the range, or at a higher mean torque or speed, or give more damping",
+    )
+
+
+def static_angles(setting: Setting, value: float) -> Array:
+    """Mean relative angles (m,) [rad] under the mean torque alone, or under straight springs where none is found."""
+    mean = setting.load.at(value)[:, setting.load.orders == 0].real.sum(axis=1)
+    names = setting.split.names
+    if setting.hold and mean.any():
+        try:
+            point = equilibrium(setting.split.system, dict(zip(setting.load.nodes, mean, strict=True)), setting.hold)
+            return np.array([point.angle[point.names.index(name)] for name in names])
+        except ModelError:
+            pass
+    onto = setting.split.system.T[[setting.split.system.node_index(node) for node in setting.load.nodes]]
+    return np.asarray(setting.split.twist(setting.split.balanced(onto, setting.hold)) @ mean)
+
+
+def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
+    """The static state; and the same moved by a tenth of the scale, for one that lies exactly on a corner."""
+    static = static_angles(problem.setting, value)
+    for shift in (0.0, 0.1, -0.1):
+        at = np.zeros((static.size, 1), dtype=complex)
+        at[:, 0] = static + shift * problem.setting.angle_scale
+        yield problem.point_of(at, value)
+
+
+def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
+    """The end of a continuation in the amplitude of the vibration, from the static state."""
+    setting, torque = problem.setting, problem.setting.load.at(value)
+    mean = np.where(setting.load.orders == 0, torque, 0.0)
+    load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0, 1.0]), np.stack([mean, torque]))
+    speed = value if setting.speed is None else setting.speed
+    raised = HarmonicProblem(
+        dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order
+    )
+    start = raised.point_of(static_angles(setting, value)[:, None].astype(complex), 0.0)
+    trace = followed(raised, start, 1, (0.0, 1.0), HOMOTOPY)
+    if trace.points and trace.parameter[-1] == 1.0:
+        yield _moved(trace.points[-1].z, problem, value)
+
+
+def _lighter(problem: HarmonicProblem, value: float) -> Iterator[Array]:
+    """The end of a continuation in the mean torque, from one high above where the law is met in another place."""
+    setting, torque = problem.setting, problem.setting.load.at(value)
+    mean = np.where(setting.load.orders == 0, torque, 0.0)
+    if not mean.any():
+        return
+    speed = value if setting.speed is None else setting.speed
+    for factor in (1.5, 3.0, 0.5, 0.1):
+        ends = np.stack([torque - mean + factor * mean, torque])
+        load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0, 1.0]), ends)
+        moved = HarmonicProblem(
+            dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order
+        )
+        static = static_angles(moved.setting, 0.0)[:, None].astype(complex)
+        trace = followed(moved, moved.point_of(static, 0.0), 1, (0.0, 1.0), HOMOTOPY)
+        if trace.points and trace.parameter[-1] == 1.0:
+            yield _moved(trace.points[-1].z, problem, value)
+
+
+def _moved(z: Array, problem: HarmonicProblem, value: float) -> Array:
+    return np.append(z[:-1], value / problem.scale[-1])

@@ -1,0 +1,74 @@
+"""A harmonic balance along any quantity of the system: a stiffness, a gap, an inertia, a damping."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from torsional.numerics.arrays import Array
+from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS, tested
+from torsional.numerics.continuation import Corrected
+from torsional.solvers.periodic.equations import Split
+from torsional.solvers.periodic.problem import HarmonicProblem, Setting
+from torsional.system import System
+
+KEPT = 64
+NUDGE = 1e-5
+"""Share of the parameter's scale by which it is moved to find the derivatives."""
+
+
+class VariedProblem(HarmonicProblem):
+    """A problem whose system is built anew at each value of the parameter; its derivative is a central difference."""
+
+    def __init__(self, setting: Setting, base_order: float, build: Callable[[float], System]) -> None:
+        super().__init__(setting, base_order)
+        self.build = build
+        self._frozen: OrderedDict[float, HarmonicProblem] = OrderedDict()
+
+    def frozen(self, value: float) -> HarmonicProblem:
+        """The problem of the system at one value; of linear parts that are equal the first is taken again."""
+        if value not in self._frozen:
+            split = Split(self.build(value), self.setting.split.speed, self.setting.split)
+            self._frozen[value] = HarmonicProblem(replace(self.setting, split=split), self.base_order)
+            while len(self._frozen) > KEPT:
+                self._frozen.popitem(last=False)
+        return self._frozen[value]
+
+    def pieces(self, points: Array) -> Iterator[tuple[slice, HarmonicProblem]]:
+        """Every point has a system of its own."""
+        for i, z in enumerate(points):
+            yield slice(i, i + 1), self.frozen(float(z[-1] * self.scale[-1]))
+
+    def linearised(self, z: Array) -> tuple[Array, Array, Array, Array]:
+        """Residual, Jacobian, derivative by the parameter and tangent spectra."""
+        residual, jacobian, _, spectra = super().linearised(z)
+        sides = [super(VariedProblem, self).linearised(np.append(z[:-1], z[-1] + s * NUDGE))[0] for s in (1, -1)]
+        return residual, jacobian, (sides[0] - sides[1]) / (2 * NUDGE * self.scale[-1]), spectra
+
+    def correct(self, guess: Array, normal: Array) -> Corrected:
+        """Newton's method across a normal, as the compiled one."""
+        z, tangent, values = guess.copy(), np.zeros_like(guess), np.zeros(len(self.tests))
+        size = last = np.inf
+        for iteration in range(1, MOST_ITERATIONS + 1):
+            residual, jacobian, slope, spectra = self.linearised(z)
+            rows = np.column_stack([jacobian * self.scale[:-1], slope * self.scale[-1]]) / self.scale[:-1, None]
+            rows = np.vstack([rows, normal])
+            step = np.append(residual / self.scale[:-1], normal @ (z - guess))
+            size = float(np.abs(step).max())
+            try:
+                both = np.linalg.solve(rows, np.column_stack([step, np.eye(z.size)[-1]]))
+            except np.linalg.LinAlgError:
+                break
+            change = float(np.abs(both[:, 0]).max())
+            if not np.isfinite(change) or (iteration > 3 and change > 4 * last):
+                break
+            z, last = z - both[:, 0], change
+            if change <= ENOUGH:
+                tangent = both[:, 1] / np.linalg.norm(both[:, 1])
+                frozen = self.frozen(float(z[-1] * self.scale[-1]))
+                tested(frozen.balance, z, tangent, jacobian, slope, spectra, values)
+                return Corrected(z, tangent, iteration, size, True, values)
+        return Corrected(z, tangent, MOST_ITERATIONS, size, False, values)
