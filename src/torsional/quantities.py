@@ -41,9 +41,19 @@ def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
     return _as(found.transpose(*angle.dims), "angular_velocity", amplitude="complex 0-peak")
 
 
+def cycles(orders: xr.DataArray) -> int:
+    """How many cycles of 720° a signal takes to repeat itself: one for half orders, two for order 0.75 and so on."""
+    counts = (1, 2, 4, 8, 16)
+    halves = 2 * np.asarray(orders.order, dtype=float)
+    return next((n for n in counts if np.allclose(n * halves, np.round(n * halves), rtol=0.0, atol=1e-9)), 1)
+
+
 def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
-    """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``."""
-    alpha = np.arange(samples) * (4 * np.pi / samples)
+    """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``.
+
+    Orders that are no multiples of one half take several `cycles` to repeat themselves, which are then all told.
+    """
+    alpha = np.arange(samples * cycles(orders)) * (4 * np.pi / samples)
     rest = [dim for dim in orders.dims if dim != "order"]
     values = orders.transpose(*rest, "order")
     signal = _synthesized(values.values, np.outer(values.order.values, alpha))
@@ -61,7 +71,7 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     """Half the peak-to-peak swing of the signal over one cycle, phases kept."""
     rest = [dim for dim in orders.dims if dim != "order"]
     values = orders.transpose(*rest, "order")
-    phase = np.outer(values.order.values, np.arange(samples) * (4 * np.pi / samples))
+    phase = np.outer(values.order.values, np.arange(samples * cycles(orders)) * (4 * np.pi / samples))
     flat = values.values.reshape(-1, values.sizes["order"])
     parts = [np.ptp(_synthesized(flat[i : i + 1024], phase), axis=1) for i in range(0, len(flat), 1024)]
     half = 0.5 * np.concatenate(parts).reshape([values.sizes[dim] for dim in rest])

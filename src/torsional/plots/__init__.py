@@ -1,5 +1,6 @@
 """Pictures: one function a picture, from a Dataset or DataArray to a matplotlib Figure."""
 
+from torsional.plots.branches import plot_branches
 from torsional.plots.campbell import plot_campbell, plot_resonance_speeds
 from torsional.plots.chain import plot_chain
 from torsional.plots.cycle import plot_cycle
@@ -7,11 +8,14 @@ from torsional.plots.engine import plot_engine_orders, plot_full_load
 from torsional.plots.maps import plot_map, plot_ratio_map
 from torsional.plots.modes import plot_energy_shares, plot_mode_shapes
 from torsional.plots.orders import plot_gears, plot_order_cuts
+from torsional.plots.region import plot_region
+from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
 from torsional.plots.springs import plot_characteristic, plot_travel
 from torsional.plots.style import panels, save_png, save_svg
 
 __all__ = [
     "panels",
+    "plot_branches",
     "plot_campbell",
     "plot_chain",
     "plot_characteristic",
@@ -20,11 +24,15 @@ __all__ = [
     "plot_engine_orders",
     "plot_full_load",
     "plot_gears",
+    "plot_loops",
     "plot_map",
     "plot_mode_shapes",
     "plot_order_cuts",
     "plot_ratio_map",
+    "plot_region",
     "plot_resonance_speeds",
+    "plot_signals",
+    "plot_solutions",
     "plot_travel",
     "save_png",
     "save_svg",

@@ -39,7 +39,7 @@ def plot_map(
     unit_label = style.label(quantity, convention, "acceleration" if quantity == "acceleration" else "")
     _draw(drawn, values, size, LogNorm(low, high), style.AMOUNT, ticks, unit_label)
     _draw_contours(drawn, values, size, ticks, within, "white")
-    _draw_limits(drawn, values, within, full_load, title)
+    draw_limits(drawn, values, within, full_load, title)
     return figure
 
 
@@ -58,7 +58,7 @@ def plot_ratio_map(
     ticks = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
     _draw(drawn, ratio, size, LogNorm(0.1, 10.0), style.RATIO, ticks, "ratio of the amplitudes [-]")
     _draw_contours(drawn, ratio, size, ticks, within, "black")
-    _draw_limits(drawn, ratio, within, full_load, title)
+    draw_limits(drawn, ratio, within, full_load, title)
     return figure
 
 
@@ -98,7 +98,7 @@ def _draw_contours(
         axes.clabel(lines, fontsize=7, fmt=lambda value: f"{value:g}")
 
 
-def _draw_limits(
+def draw_limits(
     axes: Axes, values: xr.DataArray, within: xr.DataArray | None, full_load: xr.DataArray | None, title: str
 ) -> None:
     """What lies above full load, the curve itself, axis labels."""
