@@ -287,3 +287,16 @@ def forces_along(balance: Balance, points: Array, forces: ComplexArray, crossed:
             counts[i, e] = force_harmonics(
                 balance, e, z, speed, forces[i, e], jacobian, stiffness, rate, crossed[i, e]
             )
+
+
+@numba.njit(cache=True, error_model="numpy")
+def corrected_at(balance: Balance, guesses: Array) -> tuple[Array, Array]:
+    """Newton's method at the parameters of many scaled guesses (points, n + 1): points, and 1 where it converged."""
+    out, good = guesses.copy(), np.zeros(guesses.shape[0])
+    normal = np.zeros(guesses.shape[1])
+    normal[-1] = 1.0
+    for i in range(guesses.shape[0]):
+        z, _, _, _, converged, _ = corrected(balance, guesses[i], normal, 0)
+        if converged:
+            out[i], good[i] = z, 1.0
+    return out, good

@@ -3,5 +3,6 @@
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.machine import model_response
 from torsional.solvers.periodic.response import Variation, periodic_response
+from torsional.solvers.periodic.subharmonic import subharmonic_map
 
-__all__ = ["Load", "Variation", "model_response", "periodic_response"]
+__all__ = ["Load", "Variation", "model_response", "periodic_response", "subharmonic_map"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
@@ -12,6 +14,7 @@ from torsional.numerics.arrays import Array
 from torsional.solvers.campbell import full_load
 from torsional.solvers.operating import torque_places
 from torsional.solvers.periodic.load import Load
+from torsional.solvers.periodic.problem import HarmonicProblem
 from torsional.solvers.periodic.response import HIGHEST_ORDER, periodic_response
 from torsional.system import assemble
 
@@ -108,3 +111,29 @@ def _knots(model: Model, speed: tuple[float, float]) -> Array:
     corners = np.asarray(curve.speeds) if curve is not None else np.zeros(0)
     near = np.concatenate([corners - 0.05, corners, corners + 0.05, np.linspace(*speed, 81)])
     return np.unique(np.clip(near, *speed))
+
+
+class EngineLoads:
+    """The engine's loads over speed at any mean torque, each worked out once."""
+
+    def __init__(
+        self, model: Model, speed: tuple[float, float], highest_order: float, base_order: float | None = None
+    ) -> None:
+        self.model, self.speed, self.highest_order = model, speed, highest_order
+        middle = 0.5 * sum(speed)
+        self.base_order = base_order or common_order(model, middle, 0.5 * model.full_load_peak())
+        self._loads: dict[float, Load] = {}
+        self._problems: dict[tuple[int, float, float], HarmonicProblem] = {}
+
+    def at(self, torque: float) -> Load:
+        """The load over speed at one mean torque [Nm]."""
+        if torque not in self._loads:
+            self._loads[torque] = engine_load(self.model, self.speed, torque, self.highest_order, self.base_order)
+        return self._loads[torque]
+
+    def problem(self, like: HarmonicProblem, torque: float) -> HarmonicProblem:
+        """The problem over speed at a mean torque, of the same base order and scales as another."""
+        key = id(like.setting.split), like.base_order, torque
+        if key not in self._problems:
+            self._problems[key] = HarmonicProblem(replace(like.setting, load=self.at(torque)), like.base_order)
+        return self._problems[key]

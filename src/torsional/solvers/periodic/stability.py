@@ -9,11 +9,15 @@ import numpy as np
 from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.balance import forces_along
-from torsional.numerics.floquet import multipliers
-from torsional.numerics.piecewise_basis import StageBases
+from torsional.numerics.floquet import multipliers, ordered
+from torsional.numerics.floquet_remembering import monodromy_remembering
+from torsional.numerics.floquet_sampled import monodromy_sampled
+from torsional.numerics.piecewise_basis import Coordinates, StageBases, coordinates
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.problem import HarmonicProblem
 
+SAMPLES = 512
+"""Samples a period of laws that are not piecewise linear."""
 MARGIN = 1e-6
 """A multiplier counts as outside of the unit circle beyond this excess."""
 
@@ -58,10 +62,37 @@ def branch_multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
 
 
 def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
-    split = problem.setting.split
-    times, stages = crossings_along(problem, points)
     value = points[:, -1] * problem.scale[-1]
     speed = value if problem.setting.speed is None else np.full(len(points), problem.setting.speed)
     pace = problem.base_order * speed
-    bases = stage_bases(split)
+    if not all(isinstance(law, Hinges) for law in problem.setting.split.laws):
+        found = [_sampled(problem, z, float(p)) for z, p in zip(points, pace, strict=True)]
+        return ordered(np.linalg.eigvals(np.array(found)))
+    times, stages = crossings_along(problem, points)
+    bases = stage_bases(problem.setting.split)
     return multipliers(bases, [t / p for t, p in zip(times, pace, strict=True)], stages, 2 * np.pi / pace)
+
+
+@lru_cache(maxsize=64)
+def _linear(split: Split) -> Coordinates:
+    """Coordinates of the linear part with the references in it."""
+    mass, damping, stiffness, _, lift = split.matrices
+    return coordinates(mass, damping, stiffness + split.speed**2 * lift, split.weights, split.rigid)
+
+
+def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
+    """Monodromy matrix of one point where some law is smooth or remembers."""
+    split = problem.setting.split
+    harmonics = problem.harmonics_of(z)
+    tau = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
+    angles = motion_at(harmonics, tau)
+    rates = motion_at(1j * pace * np.arange(harmonics.shape[1]) * harmonics, tau)
+    reference = np.stack([split.reference_stiffness, split.reference_damping], axis=1)
+    if any(law.remembers for law in split.laws):
+        laws = [(law.address, np.asarray(law.parameters)) for law in split.laws]
+        remembers = np.array([int(law.remembers) for law in split.laws])
+        return monodromy_remembering(_linear(split), laws, remembers, reference, angles, rates, 2 * np.pi / pace)
+    told = [law.evaluate(a, r) for law, a, r in zip(split.laws, angles, rates, strict=True)]
+    stiffness = np.stack([t[1] for t in told], axis=1) - reference[:, 0]
+    damping = np.stack([t[2] for t in told], axis=1) - reference[:, 1]
+    return monodromy_sampled(_linear(split), stiffness, damping, 2 * np.pi / pace).matrix

@@ -1,0 +1,200 @@
+"""The region of sub-harmonic vibration over speed and mean torque: how strong it is, and where it begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.balance import corrected_at
+from torsional.numerics.continuation import FOLD, Point
+from torsional.results import dataset
+from torsional.solvers.periodic.branches import MAIN, Branch, Explorer
+from torsional.solvers.periodic.curves import DOUBLING, bifurcation_curve
+from torsional.solvers.periodic.machine import EngineLoads
+from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
+from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
+from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
+from torsional.solvers.periodic.states import states
+from torsional.system import assemble
+
+PROBES = 3
+"""Points between two events at which the stability is worked out."""
+
+
+def subharmonic_map(
+    model: Model,
+    speed: ArrayLike,
+    torque: ArrayLike,
+    gear: str | int | None = None,
+    *,
+    element: str = "",
+    node: str = "",
+    highest_order: float = HIGHEST_ORDER,
+    boundary: bool = True,
+) -> xr.Dataset:
+    """Largest stable vibration at half the engine's order over ``torque`` [Nm] and ``speed`` [rad/s], with its boundary.
+
+    Every branch at each mean torque is followed and read at the speeds.  (torque, speed): ``amplitude`` [Nm] of the
+    torque in ``element`` (default: the first connection with a law), ``twist_amplitude`` [rad] there and
+    ``acceleration`` [rad/s²] at ``node`` (default: the landmark to be kept quiet), each 0-peak of the sub-harmonic
+    order and zero where there is none; ``stable_solutions``, ``solutions`` how many there are.  ``boundary_speed``,
+    ``boundary_torque`` (boundary_point), with ``boundary_kind`` and ``boundary_curve``: curves of period doublings, and
+    of folds of the doubled branches.  Raises ModelError as `model_response` does.
+    """
+    speeds, torques = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speed, torque))
+    for name, values in (("speed", speeds), ("torque", torques)):
+        if values.size < 2 or not (np.diff(values) > 0).all():
+            raise ModelError("at least two rising values are wanted", where=name, found=str(values[:4]))
+    system, span = assemble(model.powertrain(gear or None)), (float(speeds[0]), float(speeds[-1]))
+    loads = EngineLoads(model, span, highest_order)
+    first = explored(
+        system, loads.at(float(torques[-1])), span, hold=model.landmarks.load, highest_order=highest_order, depth=1
+    )
+    place = element or first.setting.split.names[0]
+    quiet = node or model.landmarks.input or system.nodes[-1]
+    table = _Table(speeds, torques, system.connections.names.index(place), system.node_index(quiet))
+    edges: list[tuple[float, Explorer]] = []
+    for row, value in enumerate(torques):
+        explorer = Explorer(replace(first.setting, load=loads.at(float(value))), first.base_order, span, depth=1)
+        explorer.explored()
+        table.fill(row, explorer.branches)
+        edges.append((float(value), explorer))
+    curves = _boundary(edges, loads, span) if boundary else []
+    data = table.presented(curves, place, quiet, 0.5 * first.base_order)
+    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+
+
+class _Table:
+    """The grid as it is filled, one torque after the other."""
+
+    def __init__(self, speeds: Array, torques: Array, element: int, node: int) -> None:
+        self.speeds, self.torques, self.element, self.node = speeds, torques, element, node
+        shape = (torques.size, speeds.size)
+        self.amplitude, self.twist, self.acceleration = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        self.solutions, self.stable = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
+
+    def fill(self, row: int, branches: list[Branch]) -> None:
+        """Read every branch at the speeds of the grid."""
+        for branch in branches:
+            stable = stable_stretches(branch)
+            guesses, columns, stretch = read(branch, self.speeds)
+            np.add.at(self.solutions[row], columns, 1)
+            np.add.at(self.stable[row], columns, stable[stretch])
+            kept = stable[stretch]
+            if branch.kind != MAIN and kept.any():
+                self._largest(row, branch.problem, guesses[kept], columns[kept])
+
+    def _largest(self, row: int, problem: HarmonicProblem, guesses: Array, columns: IntArray) -> None:
+        points, good = corrected_at(problem.balance, guesses)
+        points, columns = points[good > 0], columns[good > 0]
+        told = states(problem, points)
+        omega = problem.base_order * self.speeds[columns]
+        for target, values in (
+            (self.amplitude, np.abs(told.torque[:, 1, self.element])),
+            (self.twist, np.abs(told.twist[:, 1, self.element])),
+            (self.acceleration, np.abs(told.angle[:, 1, self.node]) * omega**2),
+        ):
+            np.maximum.at(target[row], columns, values)
+
+    def presented(self, curves: list[tuple[str, Array]], element: str, node: str, order: float) -> xr.Dataset:
+        """The Dataset."""
+        over, along = ("torque", "speed"), ("boundary_point",)
+        points = np.concatenate([curve for _, curve in curves]) if curves else np.zeros((0, 2))
+        sizes = [len(curve) for _, curve in curves]
+        return dataset(
+            {
+                "amplitude": (over, self.amplitude, "torque"),
+                "twist_amplitude": (over, self.twist, "relative_angle"),
+                "acceleration": (over, self.acceleration, "acceleration"),
+                "solutions": (over, self.solutions, ""),
+                "stable_solutions": (over, self.stable, ""),
+                "boundary_speed": (along, points[:, 0], "speed"),
+                "boundary_torque": (along, points[:, 1], "torque"),
+                "boundary_kind": (along, np.repeat([kind for kind, _ in curves], sizes).astype(str), ""),
+                "boundary_curve": (along, np.repeat(np.arange(len(curves)), sizes), ""),
+            },
+            {"torque": (self.torques, "torque"), "speed": (self.speeds, "speed")},
+            analysis="subharmonic map",
+            amplitude="0-peak of the sub-harmonic order",
+            order=order,
+            element=element,
+            node=node,
+        )
+
+
+def read(branch: Branch, speeds: Array) -> tuple[Array, IntArray, IntArray]:
+    """Where a branch passes the speeds: scaled guesses between its points, columns of the speeds, numbers of stretches."""
+    scaled, values = branch.scaled, speeds / branch.problem.scale[-1]
+    start, end = scaled[:-1, -1], scaled[1:, -1]
+    low, high = np.minimum(start, end)[:, None], np.maximum(start, end)[:, None]
+    last = (np.arange(len(start)) == len(start) - 1)[:, None]
+    stretch, columns = np.nonzero((values >= low) & ((values < high) | (last & (values == high))))
+    share = ((values[columns] - start[stretch]) / (end[stretch] - start[stretch]))[:, None]
+    guesses = scaled[stretch] + share * (scaled[stretch + 1] - scaled[stretch])
+    guesses[:, -1] = values[columns]
+    return guesses, columns, stretch
+
+
+def stable_stretches(branch: Branch) -> BoolArray:
+    """Whether each stretch between two points is stable: told at a few points between two events, where it changes."""
+    events = np.array([bool(point.event) for point in branch.points])
+    edges = np.unique(np.concatenate([[0], np.flatnonzero(events), [len(events) - 1]]))
+    stable = np.zeros(max(len(events) - 1, 1), dtype=bool)
+    scaled = branch.scaled
+    for start, end in zip(edges[:-1], edges[1:], strict=True):
+        inner = np.arange(start + 1, end) if end > start + 1 else np.array([start])
+        probes = inner[np.unique(np.linspace(0, len(inner) - 1, PROBES).round().astype(int))]
+        points = scaled[probes] if end > start + 1 else 0.5 * (scaled[[start]] + scaled[[end]])
+        stable[start:end] = (np.abs(branch_multipliers(branch.problem, points)) <= 1 + MARGIN).all()
+    return stable
+
+
+def _boundary(
+    edges: list[tuple[float, Explorer]], loads: EngineLoads, span: tuple[float, float]
+) -> list[tuple[str, Array]]:
+    """Curves (speed, torque) of period doublings of the main branches and folds of the doubled ones, each once."""
+    curves: list[tuple[str, Array]] = []
+    torques = (edges[0][0], edges[-1][0])
+    for torque, explorer in edges:
+        for branch in explorer.branches:
+            for event in branch.events:
+                kind = event.event
+                wanted = kind == DOUBLING if branch.kind == MAIN else kind == FOLD
+                if wanted and not _on(curves, kind, event, torque, span, torques):
+                    problem = branch.problem
+
+                    def family(value: float, problem: HarmonicProblem = problem) -> HarmonicProblem:
+                        return loads.problem(problem, value)
+
+                    trace = bifurcation_curve(family, event, torque, span, torques)
+                    points = np.array([[p.z[-2] * problem.scale[-1], p.parameter] for p in trace.points])
+                    curves.append((kind, points))
+    return curves
+
+
+def _on(
+    curves: list[tuple[str, Array]],
+    kind: str,
+    event: Point,
+    torque: float,
+    span: tuple[float, float],
+    torques: tuple[float, float],
+) -> bool:
+    """Whether an event lies on a curve that is known already."""
+    size = np.array([span[1] - span[0], torques[1] - torques[0]])
+    at = np.array([event.parameter, torque]) / size
+    for known, curve in curves:
+        if known != kind or len(curve) < 2:
+            continue
+        start, step = curve[:-1] / size, np.diff(curve / size, axis=0)
+        length = np.maximum((step**2).sum(axis=1), 1e-30)
+        share = np.clip(((at - start) * step).sum(axis=1) / length, 0, 1)
+        if np.linalg.norm(start + share[:, None] * step - at, axis=1).min() < 5e-3:
+            return True
+    return False
