@@ -18,7 +18,7 @@ _HOMES = {
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
     "errors": "ModelError TorsionalError",
     "files": "changed expanded load_model",
-    "laws": "Hinges Law",
+    "laws": "Coulomb Hinges Jenkins Law LuGre Polynomial Table",
     "model": "Gear Landmarks Model Operation",
     "powertrain": "Powertrain",
     "quantities": "acceleration amplitude angular_velocity bound dominant_element irregularity named_modes order_share "

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from torsional import __version__
+from torsional import __version__, laws
 from torsional.cli import map as maps
 from torsional.cli import modes, respond
 from torsional.cli.answers import print_json
@@ -17,8 +17,8 @@ from torsional.cli.documents import amount, json_text
 from torsional.cli.progress import progress
 from torsional.cli.tables import Column, Table, print_tables
 from torsional.files import load_model, starter
-from torsional.laws import Hinges
 from torsional.model import Model
+from torsional.numerics.callbacks import address_of
 from torsional.solvers.campbell import campbell
 from torsional.solvers.map import HALF_ORDERS, response_map
 
@@ -60,4 +60,12 @@ def steps(model: Model) -> Iterator[Step]:
     nodes, elements = [model.landmarks.crankshaft], [*model.landmarks.springs]
     yield "respond", lambda: respond.response(model, gear, speeds, torques[[1, 1, 0]], HALF_ORDERS, nodes, elements)
     yield "map", lambda: maps.reduced(response_map(model, speeds, torques, [gear]), model)
-    yield "laws", lambda: Hinges.staged([(1.0, 1.0)], lash=0.1).torque(np.linspace(-1.0, 1.0, 5000))
+    yield "laws", _laws
+
+
+def _laws() -> None:
+    """The loops over laws once, and the kernel of each."""
+    law = laws.Hinges.staged([(1.0, 1.0)], lash=0.1)
+    law.march(law.torque(np.linspace(-1.0, 1.0, 5000)), 1.0)
+    for kind in (laws.Coulomb, laws.Jenkins, laws.LuGre, laws.Polynomial, laws.Table):
+        address_of(kind.kernel)

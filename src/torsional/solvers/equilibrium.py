@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,27 +16,29 @@ from torsional.numerics.null_space import null_vectors
 from torsional.system import System
 
 ITERATIONS = 100
+WIDEST = 40
+"""Doublings of a microradian that a mean twist may take."""
 
 
 @dataclass(frozen=True, eq=False)
 class OperatingPoint:
-    """Mean state of every connection: ``torque`` [Nm], ``angle`` [rad], ``stiffness`` (tangent) [Nm/rad].
+    """Mean state of every connection: ``torque`` [Nm], ``angle`` [rad], tangents ``stiffness``, ``damping`` [Nms/rad].
 
     Arrays have the shape of the mean torques asked for, then one place a connection of ``names``; ``laws`` (None where
-    linear) are those the state was found with.
+    linear) are those the state was found with.  The tangents are those at rest, where friction sticks.
     """
 
     names: tuple[str, ...]
     torque: Array
     angle: Array
     stiffness: Array
+    damping: Array
     laws: tuple[Law | None, ...]
 
     def at(self, case: int) -> OperatingPoint:
         """One of several operating points, by its place among the mean torques."""
-        return dataclasses.replace(
-            self, torque=self.torque[case], angle=self.angle[case], stiffness=self.stiffness[case]
-        )
+        fields = ("torque", "angle", "stiffness", "damping")
+        return dataclasses.replace(self, **{name: getattr(self, name)[case] for name in fields})
 
     def stage(self, name: str) -> str:
         """The active stage of one connection, of an operating point at a single torque, in words."""
@@ -63,7 +65,8 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
 
     K q + Σ w f(w·q) = u with uᵀ1 = 0: the torque at ``hold`` balances the others through the speed ratios, never a
     soft ground spring.  Torques may be arrays of one shape.  Where statics alone fix the torques (no two spring paths
-    side by side) each law is inverted exactly, in a free range to its middle; else Newton's method.
+    side by side) each law is inverted exactly, in a free range to its middle; else Newton's method.  Friction carries
+    no mean torque: vibration has relaxed it.
     Raises ModelError for unknown nodes and for torques that no spring can carry.
 
     >>> from torsional.components import Inertia, Shaft
@@ -73,8 +76,9 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
     >>> equilibrium(assemble(pair), {"a": 100.0}, hold="b").angle.round(12).tolist()
     [-0.01]
     """
-    loads = _balanced(system, torques, hold)
-    carrying = _carrying(system)
+    elastic = _without_friction(system)
+    loads = _balanced(elastic, torques, hold)
+    carrying = _carrying(elastic)
     weights = system.connections.weights[carrying]
     shares, _, rank, _ = np.linalg.lstsq(weights.T, loads.T, rcond=None)
     if rank == len(weights):
@@ -83,30 +87,37 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
             raise ModelError("no spring carries the mean torque to the node that takes it up", where=hold)
         torque = np.zeros((len(loads), carrying.size))
         torque[:, carrying] = shares.T
-        angle = np.array([_angles(system, i, torque[:, i]) for i in range(carrying.size)]).T
+        angle = np.array([_angles(elastic, i, torque[:, i]) for i in range(carrying.size)]).T
+        _take_along(system, angle, carrying)
     else:
-        found = [_newton(system, load) for load in loads]
+        found = [_newton(elastic, load) for load in loads]
         angle = np.array([system.connections.weights @ q for q in found])
-        torque = np.array([_forces(system, a)[0] for a in angle])
-    shape = np.broadcast_shapes(*(np.shape(value) for value in torques.values()))
-    stiffness = np.array([_forces(system, a)[1] for a in angle])
-    names = system.connections.names
-    torque, angle, stiffness = (v.reshape(*shape, carrying.size) for v in (torque, angle, stiffness))
-    return OperatingPoint(names, torque, angle, stiffness, system.connections.laws)
+        torque = np.array([_forces(elastic, a)[0] for a in angle])
+    return _point(system, np.broadcast_shapes(*(np.shape(value) for value in torques.values())), torque, angle)
+
+
+def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) -> OperatingPoint:
+    """The tangents beside torques and angles (cases, connections), in the shape of the mean torques asked for."""
+    c = system.connections
+    tangents = np.array([_forces(system, a)[1:] for a in angle])
+    each = (torque, angle, tangents[:, 0], tangents[:, 1])
+    torque, angle, stiffness, damping = (value.reshape(*shape, len(c.names)) for value in each)
+    return OperatingPoint(c.names, torque, angle, stiffness, damping, c.laws)
 
 
 def linearize(system: System, point: OperatingPoint) -> System:
-    """The same system with each law replaced by its tangent at one operating point.
+    """The same system with each law replaced by its tangents at one operating point; friction sticks.
 
     Raises ModelError for a point of several operating points (pick one with its ``at``).
     """
     if point.names != system.connections.names:
         raise ModelError("the operating point belongs to another system", found=", ".join(point.names[:8]))
-    stiffness = np.where(
-        [law is None for law in system.connections.laws], system.connections.stiffness, point.stiffness
+    c = system.connections
+    plain = [law is None for law in c.laws]
+    stiffness, damping = (
+        np.where(plain, old, new) for old, new in ((c.stiffness, point.stiffness), (c.damping, point.damping))
     )
-    none: tuple[Law | None, ...] = (None,) * len(point.names)
-    connections = dataclasses.replace(system.connections, stiffness=stiffness, laws=none)
+    connections = dataclasses.replace(c, stiffness=stiffness, damping=damping, laws=(None,) * len(point.names))
     return dataclasses.replace(system, connections=connections)
 
 
@@ -133,38 +144,76 @@ def _carrying(system: System) -> Array:
     return np.asarray((c.stiffness > 0) | np.array([law is not None for law in c.laws], dtype=bool))
 
 
+def _without_friction(system: System) -> System:
+    """The system without the laws that carry no mean torque."""
+    laws = tuple(law if law is not None and law.carries_mean_torque else None for law in system.connections.laws)
+    return dataclasses.replace(system, connections=dataclasses.replace(system.connections, laws=laws))
+
+
+def _take_along(system: System, angle: Array, carrying: Array) -> None:
+    """Give friction the angles that the springs beside it have; none where no springs say them."""
+    c = system.connections
+    sliding = [i for i, law in enumerate(c.laws) if law is not None and not carrying[i]]
+    if sliding:
+        follows = np.linalg.lstsq(c.weights[carrying].T, c.weights[sliding].T, rcond=None)[0].T
+        told = np.abs(follows @ c.weights[carrying] - c.weights[sliding]).max(axis=1) < 1e-9
+        angle[:, sliding] = np.where(told, angle[:, carrying] @ follows.T, 0.0)
+
+
 def _angles(system: System, index: int, torque: Array) -> Array:
     c = system.connections
-    law = c.laws[index]
+    law, stiffness = c.laws[index], c.stiffness[index]
     if law is None:
-        return np.asarray(torque / c.stiffness[index]) if c.stiffness[index] > 0 else np.zeros_like(torque)
+        return np.asarray(torque / stiffness) if stiffness > 0 else np.zeros_like(torque)
     try:
-        return law.angle(torque) if isinstance(law, Hinges) else _inverted(law, torque)
+        return law.angle(torque) if isinstance(law, Hinges) and stiffness == 0 else _inverted(law, stiffness, torque)
     except ModelError as error:
         raise error.located(prefix=c.names[index]) from None
 
 
-def _inverted(law: Law, torque: Array) -> Array:
-    """The angle of a smooth rising law, by Newton's method."""
-    angle = np.zeros_like(torque)
-    for _ in range(ITERATIONS):
+def _inverted(law: Law, stiffness: float, torque: Array) -> Array:
+    """The angle at which a rising law and a ``stiffness`` beside it carry a torque: Newton's method in a bracket."""
+
+    def carried(angle: Array) -> tuple[Array, Array]:
         force, slope = law.evaluate(angle)[:2]
-        step = (torque - force) / slope
-        angle = angle + step
-        if np.all(np.abs(step) <= 1e-14 * (1 + np.abs(angle))):
-            return angle
-    raise ModelError("no angle found that carries the mean torque", found=f"{np.ravel(torque)[0]:g} Nm")
+        return torque - stiffness * angle - force, stiffness + slope
+
+    low, high = _bracket(lambda angle: carried(angle)[0], torque)
+    angle = 0.5 * (low + high)
+    for _ in range(ITERATIONS):
+        rest, slope = carried(angle)
+        low, high = np.where(rest > 0, angle, low), np.where(rest < 0, angle, high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            newton = angle + rest / slope
+        new = np.where((low < newton) & (newton < high), newton, 0.5 * (low + high))
+        new = np.where(rest == 0, angle, new)
+        if np.all(np.abs(new - angle) <= 1e-14 * np.abs(angle) + 1e-18):
+            return new
+        angle = new
+    return angle
 
 
-def _forces(system: System, angle: Array) -> tuple[Array, Array]:
-    """Torque and tangent stiffness of every connection at its angle."""
+def _bracket(rest: Callable[[Array], Array], torque: Array) -> tuple[Array, Array]:
+    """Angles on either side of those at which nothing is left of each torque, doubled until they are."""
+    low, high = np.full_like(torque, -1e-6), np.full_like(torque, 1e-6)
+    for _ in range(WIDEST):
+        short, beyond = rest(high) > 0, rest(low) < 0
+        if not (short | beyond).any():
+            return low, high
+        low, high = np.where(beyond, 2 * low, low), np.where(short, 2 * high, high)
+    found = f"{torque[short | beyond].flat[0]:g} Nm"
+    raise ModelError("no angle found that carries the mean torque", found=found)
+
+
+def _forces(system: System, angle: Array) -> tuple[Array, Array, Array]:
+    """Torque, tangent stiffness and tangent damping of every connection at rest at its angle."""
     c = system.connections
-    torque, tangent = c.stiffness * angle, c.stiffness.copy()
+    torque, tangent, damping = c.stiffness * angle, c.stiffness.copy(), c.damping.copy()
     for i, law in enumerate(c.laws):
         if law is not None:
-            force, slope = law.evaluate(angle[i])[:2]
-            torque[i], tangent[i] = torque[i] + force, tangent[i] + slope
-    return torque, tangent
+            force, slope, drag = law.evaluate(angle[i])[:3]
+            torque[i], tangent[i], damping[i] = torque[i] + force, tangent[i] + slope, damping[i] + drag
+    return torque, tangent, damping
 
 
 def _newton(system: System, load: Array) -> Array:
@@ -176,7 +225,7 @@ def _newton(system: System, load: Array) -> Array:
     q, scale = np.zeros(weights.shape[1]), max(float(np.abs(load).max()), 1.0)
     for _ in range(ITERATIONS):
         angle = weights @ q
-        torque, tangent = _forces(system, angle)
+        torque, tangent, _ = _forces(system, angle)
         rest = load - weights.T @ torque
         rounding = 8 * np.finfo(float).eps * float((np.abs(torque) + tangent * np.abs(angle)).max())
         if np.abs(rest).max() <= 1e-11 * scale + rounding:

@@ -104,6 +104,8 @@ def _one_gear(
     system = assemble(model.powertrain(gear))
     state = mean_state(model, system, torques)
     values = {"stiffness": state.stiffness}
+    if (state.damping != system.connections.damping).any():  # a law that damps at rest
+        values["damping"] = state.damping
     turning, omega = np.repeat(speeds, len(orders)), np.outer(speeds, orders).ravel()
     q, status = response(system, omega, turning, model.landmarks.throws, loads, values)
     shape = (len(torques), len(speeds), len(orders), -1)
@@ -111,7 +113,7 @@ def _one_gear(
     twisted = _elements(system, places[1])
     angle = (q @ system.T[nodes].T).reshape(shape)
     part = _picked(system, twisted)
-    told = {"stiffness": state.stiffness[:, twisted]}
+    told = {key: value[:, twisted] for key, value in values.items()}
     torque = element_torques(part, omega, turning, q, told).reshape(shape)
     return angle, torque, state.angle[:, twisted], status.reshape(shape[:-1]), system.speed_ratio[nodes]
 

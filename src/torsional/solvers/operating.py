@@ -41,6 +41,6 @@ def operated(model: Model, torque: float, gear: str | int | None = None) -> tupl
     system = assemble(model.powertrain(gear))
     if not system.elements and not (model.landmarks.throws and model.landmarks.load):
         c, still = system.connections, np.zeros(len(system.connections.names))
-        return system, OperatingPoint(c.names, still, still, c.stiffness, c.laws)
+        return system, OperatingPoint(c.names, still, still, c.stiffness, c.damping, c.laws)
     point = mean_state(model, system, float(torque))
     return linearize(system, point), point

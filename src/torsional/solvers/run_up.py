@@ -94,7 +94,7 @@ def _coordinates(
     assert engine is not None
     q = np.empty((len(speeds), len(orders), len(system.coordinates)), dtype=complex)
     twisting = np.empty((len(speeds), len(orders), len(system.connections.names)), dtype=complex)
-    _, group = np.unique(state.stiffness, axis=0, return_inverse=True)
+    _, group = np.unique(np.hstack([state.stiffness, state.damping]), axis=0, return_inverse=True)
     for number in range(int(group.max()) + 1):
         at = np.flatnonzero(group.ravel() == number)
         linear = linearize(system, state.at(int(at[0])))

@@ -1,83 +1,24 @@
-"""Force laws: each is data plus one scalar compiled function that every solver calls.
-
-A law's ``kernel`` is a compiled function of plain floats::
-
-    torque(parameters, angle, rate, memory) -> (torque, d_torque_d_angle, d_torque_d_rate, memory)
-
-The Python object holds the named, checked values, packs them into ``parameters`` and broadcasts the same function over
-arrays.  A law of one's own is a subclass of `Law` with a ``kernel`` and ``parameters``; no solver changes.
-"""
+"""Piecewise-linear laws: stages, lash, clearances and stops as a sum of hinges."""
 # mypy: disable-error-code="untyped-decorator"
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
+from torsional.laws.base import Law, Told, plain
+from torsional.laws.checks import rising_points
 from torsional.numerics.arrays import Array, IntArray
-
-_FEW = 2000
-
-
-@numba.njit(cache=True)
-def _broadcast(kernel: Any, parameters: Array, angle: Array, rate: Array, memory: Array) -> Array:
-    out = np.empty((4, angle.size))
-    for i in range(angle.size):
-        torque, d_angle, d_rate, state = kernel(parameters, angle[i], rate[i], memory[i])
-        out[0, i], out[1, i], out[2, i], out[3, i] = torque, d_angle, d_rate, state
-    return out
-
-
-class Law:
-    """A torque law along one relative angle; subclasses give ``kernel`` and ``parameters``."""
-
-    kernel: ClassVar[Callable[..., Any]]
-
-    @property
-    def parameters(self) -> Array:
-        """The law's values as one flat array, in the order its kernel reads them."""
-        raise TypeError(f"{type(self).__name__} must define its parameters")
-
-    def evaluate(self, angle: ArrayLike, rate: ArrayLike = 0.0, memory: ArrayLike = 0.0) -> tuple[Array, ...]:
-        """Torque [Nm], its derivatives by angle and rate, and the new memory, broadcast over the arguments."""
-        arrays = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (angle, rate, memory)))
-        kernel: Any = type(self).kernel
-        broadcast: Any = _broadcast
-        if arrays[0].size < _FEW:  # the same functions without their compilation, which outlasts a few thousand calls
-            kernel, broadcast = (getattr(f, "py_func", f) for f in (kernel, broadcast))
-        out = broadcast(kernel, self.parameters, *(np.ravel(v) for v in arrays))
-        return tuple(row.reshape(arrays[0].shape) for row in out)
-
-    def torque(self, angle: ArrayLike, rate: ArrayLike = 0.0) -> Array:
-        """Torque [Nm] at a relative angle [rad] and rate [rad/s]."""
-        return self.evaluate(angle, rate)[0]
-
-    def tangent(self, angle: ArrayLike) -> Array:
-        """Slope of the torque [Nm/rad] at an angle [rad]."""
-        return self.evaluate(angle)[1]
-
-    def stage_name(self, angle: float) -> str:
-        """The part of the law that an angle [rad] lies in, in words; a law without parts is smooth."""
-        return "smooth"
-
-    def distance_to_stop(self, angle: float, torque: float) -> float:
-        """The way [rad] left to the end stop on the side of the torque; not a number where there is none."""
-        return float("nan")
-
-    def secant(self, centre: ArrayLike, amplitude: ArrayLike) -> Array:
-        """Stiffness of the chord [Nm/rad] across ``centre ± amplitude`` [rad]."""
-        centre, amplitude = np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float)
-        return np.asarray((self.torque(centre + amplitude) - self.torque(centre - amplitude)) / (2 * amplitude))
 
 
 @numba.njit(cache=True, error_model="numpy")
-def hinges_torque(parameters: Array, angle: float, rate: float, memory: float) -> tuple[float, float, float, float]:
+def hinges_torque(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
     """f(φ) = k0 φ + Σ s Δk max(0, s (φ − g)); parameters are k0 followed by rows of (g, s, Δk)."""
     torque, tangent = parameters[0] * angle, parameters[0]
     for i in range(1, parameters.size, 3):
@@ -86,7 +27,7 @@ def hinges_torque(parameters: Array, angle: float, rate: float, memory: float) -
         if beyond > 0.0:
             torque += side * change * beyond
             tangent += change
-    return torque, tangent, 0.0, memory
+    return plain(torque, tangent, 0.0)
 
 
 @dataclass(frozen=True)
@@ -108,7 +49,7 @@ class Hinges(Law):
     changes: tuple[float, ...] = ()
     stops: tuple[float, ...] = field(default=())
 
-    kernel: ClassVar[Callable[..., Any]] = hinges_torque
+    kernel: ClassVar[Callable[..., Told]] = hinges_torque
 
     def __post_init__(self) -> None:
         if not len(self.gaps) == len(self.sides) == len(self.changes):
@@ -163,6 +104,31 @@ class Hinges(Law):
                 stops.append(side * at)
         gaps, signs, changes = zip(*hinges, strict=True) if hinges else ((), (), ())
         return cls(base, gaps, signs, changes, tuple(sorted(stops)))
+
+    @classmethod
+    def through(cls, points: Sequence[tuple[float, float]]) -> Hinges:
+        """Straight lines through points (angle [rad], torque [Nm]) with rising angles; the outer lines go on.
+
+        Angles are counted from where the spring is free of torque, so that the lines pass through (0, 0); raises
+        ModelError otherwise, and where the torque falls.
+
+        >>> Hinges.through([(-0.1, -100.0), (0.0, 0.0), (0.1, 100.0), (0.2, 400.0)]).torque([-0.2, 0.3]).tolist()
+        [-200.0, 700.0]
+        """
+        angles, torques = rising_points(points)
+        slopes = np.diff(torques) / np.diff(angles)
+        inner = angles[1:-1]
+        middle = int(np.searchsorted(inner, 0.0))  # the line that passes through the angle zero
+        at_zero = torques[middle] - slopes[middle] * angles[middle]
+        if abs(at_zero) > 1e-9 * np.abs(torques).max():
+            remedy = "count the angles from where the spring is free of torque"
+            raise ModelError("the lines miss the point (0, 0)", found=f"{at_zero:g} Nm there", remedy=remedy)
+        steps = np.diff(slopes)
+        kinks = np.flatnonzero(np.abs(steps) > 1e-12 * slopes.max())
+        sides = np.where(kinks < middle, -1.0, 1.0)
+        changes = sides * steps[kinks]
+        listed = (tuple(float(v) for v in values) for values in (inner[kinks], sides, changes))
+        return cls(float(slopes[middle]), *listed)
 
     @property
     def parameters(self) -> Array:

@@ -1,0 +1,146 @@
+"""What every force law is: values, and one scalar compiled function of them."""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numba
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import ArrayLike
+
+from torsional.numerics.arrays import Array
+from torsional.numerics.callbacks import RETURNED, address_of, law_at
+
+Told = tuple[float, float, float, float, float, float, float, float]
+"""Torque and its derivatives by angle, rate and memory; the new memory and its derivatives by the same."""
+
+_FEW = 2000
+"""Evaluations up to which plain Python is quicker than getting hold of compiled code."""
+
+
+@register_jitable  # callable from compiled code and from Python, where a compiled function would first be compiled
+def plain(torque: float, d_angle: float, d_rate: float) -> Told:
+    """What the kernel of a law without memory gives back, from its torque and the derivatives by angle and rate.
+
+    >>> plain(3.0, 2.0, 0.0)
+    (3.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    """
+    return torque, d_angle, d_rate, 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+@register_jitable
+def _rows(
+    torque: Callable[..., Told], parameters: Array, angle: Array, rate: Array, memory: Array, step: Array
+) -> Array:
+    out = np.empty((RETURNED, angle.size))
+    for i in range(angle.size):
+        told = torque(parameters, angle[i], rate[i], memory[i], step[i])
+        for j in range(RETURNED):
+            out[j, i] = told[j]
+    return out
+
+
+@register_jitable
+def _marched(torque: Callable[..., Told], parameters: Array, angle: Array, step: Array, memory: float) -> Array:
+    out = np.empty((2, angle.size))
+    for i in range(angle.size):
+        rate = (angle[i] - angle[i - 1]) / step[i] if i > 0 else 0.0
+        told = torque(parameters, angle[i], rate, memory, step[i])
+        memory = told[4]
+        out[0, i], out[1, i] = told[0], memory
+    return out
+
+
+@numba.njit(cache=True)
+def _compiled_rows(address: int, parameters: Array, angle: Array, rate: Array, memory: Array, step: Array) -> Array:
+    return _rows(law_at(address), parameters, angle, rate, memory, step)
+
+
+@numba.njit(cache=True)
+def _compiled_march(address: int, parameters: Array, angle: Array, step: Array, memory: float) -> Array:
+    return _marched(law_at(address), parameters, angle, step, memory)
+
+
+class Law:
+    """A torque law along one relative angle; subclasses give ``kernel`` and ``parameters``.
+
+    ``remembers``: the torque depends on the past as well, through one number, the elastic deflection [rad] of the
+    element that sticks or slides; zero is relaxed.  ``carries_mean_torque``: it holds a torque at rest.
+    """
+
+    kernel: ClassVar[Callable[..., Told]]
+    remembers: ClassVar[bool] = False
+    carries_mean_torque: ClassVar[bool] = True
+    departs: ClassVar[str] = "swings across a change of its stiffness"
+    """What happens where the law `changes_within` a swing, in words that follow the connection's name."""
+
+    @property
+    def parameters(self) -> Array:
+        """The law's values as one flat array, in the order its kernel reads them."""
+        raise TypeError(f"{type(self).__name__} must define its parameters")
+
+    @property
+    def address(self) -> int:
+        """Where the compiled kernel is, for `torsional.numerics.callbacks.law_at`; compiled or read from disk once."""
+        return address_of(type(self).kernel)
+
+    def evaluate(
+        self, angle: ArrayLike, rate: ArrayLike = 0.0, memory: ArrayLike = 0.0, step: ArrayLike = 0.0
+    ) -> tuple[Array, ...]:
+        """Torque [Nm], its derivatives by angle and rate, and the new memory, broadcast over the arguments.
+
+        ``step`` [s] is how long the ``rate`` [rad/s] has acted since the ``memory`` [rad]; see the kernel's meaning.
+        """
+        arrays = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (angle, rate, memory, step)))
+        flat = [np.ascontiguousarray(np.ravel(v)) for v in arrays]
+        out = self._run(_rows, _compiled_rows, arrays[0].size, *flat)
+        return tuple(row.reshape(arrays[0].shape) for row in (out[0], out[1], out[2], out[4]))
+
+    def march(self, angle: ArrayLike, step: ArrayLike, memory: float = 0.0) -> tuple[Array, Array]:
+        """Torque [Nm] and memory [rad] along a history of the ``angle`` [rad], sampled every ``step`` [s].
+
+        ``step`` is one number, or for each angle the time since the one before.  The history starts at rest with
+        ``memory``; over each step the rate is the mean one.  A hysteresis loop is the torque over the angle.
+        """
+        angles = np.ascontiguousarray(angle, dtype=float)
+        steps = np.array(np.broadcast_to(np.asarray(step, dtype=float), angles.shape))
+        steps[:1] = 0.0
+        torque, memories = self._run(_marched, _compiled_march, angles.size, angles, steps, float(memory))
+        return torque, memories
+
+    def _run(self, interpreted: Any, compiled: Any, size: int, *arguments: Any) -> Array:
+        """One of two functions of the same body: for a few evaluations in Python, else by the kernel's address."""
+        kernel = type(self).kernel
+        parameters = np.ascontiguousarray(self.parameters, dtype=float)
+        if size < _FEW or not hasattr(kernel, "py_func"):
+            with np.errstate(over="ignore"):
+                return np.asarray(interpreted(getattr(kernel, "py_func", kernel), parameters, *arguments))
+        return np.asarray(compiled(self.address, parameters, *arguments))
+
+    def torque(self, angle: ArrayLike, rate: ArrayLike = 0.0) -> Array:
+        """Torque [Nm] at a relative angle [rad] and rate [rad/s]."""
+        return self.evaluate(angle, rate)[0]
+
+    def tangent(self, angle: ArrayLike) -> Array:
+        """Slope of the torque [Nm/rad] at an angle [rad]."""
+        return self.evaluate(angle)[1]
+
+    def stage_name(self, angle: float) -> str:
+        """The part of the law that an angle [rad] lies in, in words; a law without parts is smooth."""
+        return "smooth"
+
+    def distance_to_stop(self, angle: float, torque: float) -> float:
+        """The way [rad] left to the end stop on the side of the torque; not a number where there is none."""
+        return float("nan")
+
+    def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
+        """Whether a linear response between two angles [rad] is no more than an approximation by a jump of the law."""
+        return np.zeros(np.broadcast(np.asarray(low), np.asarray(high)).shape, dtype=bool)
+
+    def secant(self, centre: ArrayLike, amplitude: ArrayLike) -> Array:
+        """Stiffness of the chord [Nm/rad] across ``centre ± amplitude`` [rad]."""
+        centre, amplitude = np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float)
+        return np.asarray((self.torque(centre + amplitude) - self.torque(centre - amplitude)) / (2 * amplitude))

@@ -1,0 +1,37 @@
+"""Checks of the values of laws; the messages name the field."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array
+
+
+def positive(value: float, field: str, unit: str) -> None:
+    """Refuse all but finite numbers above zero."""
+    if not (math.isfinite(value) and value > 0):
+        raise ModelError("must be positive", where=field, found=f"{value}", allowed=f"> 0 {unit}".strip())
+
+
+def not_negative(value: float, field: str, unit: str) -> None:
+    """Refuse all but finite numbers of zero and above."""
+    if not (math.isfinite(value) and value >= 0):
+        raise ModelError("must not be negative", where=field, found=f"{value}", allowed=f">= 0 {unit}".strip())
+
+
+def rising_points(points: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
+    """Angles [rad] and torques [Nm] of two or more points; refused unless the angles rise and no torque falls."""
+    rows = np.asarray(points, dtype=float)
+    if rows.ndim != 2 or rows.shape[0] < 2 or rows.shape[1] != 2 or not np.isfinite(rows).all():
+        found = f"{len(points)} of them"
+        raise ModelError("two points or more are wanted, each an angle and a torque", where="points", found=found)
+    angles, torques = rows.T
+    for i in np.flatnonzero((np.diff(angles) <= 0) | (np.diff(torques) < 0))[:1]:
+        found = f"({angles[i + 1]:g} rad, {torques[i + 1]:g} Nm) after ({angles[i]:g} rad, {torques[i]:g} Nm)"
+        problem = "points are listed with rising angles, and torques that do not fall"
+        raise ModelError(problem, where="points", found=found)
+    return angles, torques
