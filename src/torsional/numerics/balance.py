@@ -96,7 +96,7 @@ def force_harmonics(
 def equations(
     balance: Balance, z: Array, p: float, residual: Array, jacobian: Array, slope: Array, spectra: ComplexArray
 ) -> None:
-    """R (n,), its Jacobian (n, n) and its derivative by the parameter (n,); ``spectra`` (m, 2, 2H + 2) of the tangents."""
+    """R (n,), its Jacobian (n, n), its derivative by the parameter (n,), tangent ``spectra`` (m, 2, 2H + 2)."""
     m = balance.reference_stiffness.size
     count = (z.size // m + 1) // 2
     speed = p if balance.by_speed == 1 else balance.fixed_speed
@@ -206,10 +206,11 @@ def corrected(
         step[:n] = residual / balance.scale[:n]
         step[n] = normal @ (z - guess)
         size = np.abs(step).max()
-        sign = factor(a, order)
+        if factor(a, order) == 0.0:
+            return z, tangent, iteration, size, False, values
         backsolve(a, order, step)
         change = np.abs(step).max()
-        if sign == 0.0 or not np.isfinite(change) or (iteration > 3 and change > 4.0 * last):
+        if not np.isfinite(change) or (iteration > 3 and change > 4.0 * last):
             return z, tangent, iteration, size, False, values
         z -= step
         last = change

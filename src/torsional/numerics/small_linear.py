@@ -11,7 +11,10 @@ from torsional.numerics.arrays import Array, ComplexArray, IntArray
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def factor(a: Array, order: IntArray) -> float:
-    """LU factors in place with row exchanges in ``order``; the sign of the determinant, 0 for a singular matrix."""
+    """LU factors in place with row exchanges in ``order``; the sign of the determinant, 0 for a singular matrix.
+
+    A singular one is left half done, and ``order`` with it.
+    """
     n, sign = a.shape[0], 1.0
     for k in range(n):
         best, largest = k, abs(a[k, k])

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import FOLD, End, Point, Settings, Trace, both_ways, followed
-from torsional.solvers.periodic.problem import JOINED, HarmonicProblem, Setting, WatchedProblem
+from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.continuation import End, Point, Settings, Trace, both_ways, followed
+from torsional.solvers.periodic.problem import JOINED, BoolArray, HarmonicProblem, Setting, WatchedProblem
+from torsional.solvers.periodic.stability import branch_multipliers, with_hidden_events
 from torsional.solvers.periodic.start import first_solution
 
 MAIN, DOUBLED, BROKEN, CROSSED, ISOLATED = "main", "period doubling", "symmetry breaking", "crossing", "isolated"
 TRACING = Settings(first_step=0.01, largest_step=0.1, largest_angle=0.35, most_points=2000)
+DEPARTED = "departed"
+NOT_BIFURCATIONS = ("", JOINED, DEPARTED)
 DEPART = 0.02
 """First step onto a branch that leaves another, in scaled angles."""
-NEAR = 1e-3
-"""Scaled distance from where a branch joins another within which nothing more is looked for."""
+NEAR = 1e-2
+"""Scaled distance from the branch that another leaves within which nothing more is looked for on that one."""
 ALIKE = 1e-6
 """Scaled distance below which two points are the same."""
 
@@ -33,6 +37,8 @@ class Branch:
     ended: str
     parent: tuple[int, int] = (-1, -1)
     """Number of the branch it leaves, and of the event there."""
+    watched: BoolArray | None = None
+    """Unknowns that are zero where it leaves and joins other branches."""
 
     @property
     def base_order(self) -> float:
@@ -42,14 +48,16 @@ class Branch:
     @property
     def events(self) -> list[Point]:
         """Its bifurcations."""
-        ends = [point.z for point in self.points if point.event == JOINED]
-        return [
-            point
-            for point in self.points
-            if point.event
-            and point.event != JOINED
-            and not any(np.abs(point.z - end).max() < NEAR for end in ends)
-        ]
+        return [point for point in self.points if point.event not in NOT_BIFURCATIONS and not self._leaving(point)]
+
+    def _leaving(self, point: Point) -> bool:
+        """Whether a point is all but on the branch that this one leaves: what is found there belongs to that one."""
+        return self.watched is not None and float(np.linalg.norm(point.z[self.watched])) < NEAR
+
+    @cached_property
+    def multipliers(self) -> ComplexArray:
+        """Floquet multipliers (points, states), by falling modulus."""
+        return branch_multipliers(self.problem, self.scaled)
 
     @property
     def scaled(self) -> Array:
@@ -71,6 +79,7 @@ class Explorer:
     span: tuple[float, float]
     settings: Settings = TRACING
     depth: int = 2
+    stability: bool = True
     branches: list[Branch] = field(default_factory=list)
     make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
 
@@ -81,13 +90,16 @@ class Explorer:
     def explored(self) -> list[Branch]:
         """All branches that hang together with the main one."""
         self.main()
-        number = 0
+        self.leave_all()
+        return self.branches
+
+    def leave_all(self, number: int = 0) -> None:
+        """Follow what leaves the branches from a number on."""
         while number < len(self.branches):
             if self._generation(number) < self.depth:
                 for place, event in enumerate(self.branches[number].events):
                     self._leave(number, place, event)
             number += 1
-        return self.branches
 
     def main(self) -> None:
         """The main branch from the lower end of the span; from the upper end too where the first does not get there."""
@@ -185,15 +197,28 @@ class Explorer:
             return
         settings = replace(self.settings, terminal=(JOINED,) if watched else ())
         trace = followed(watched or problem, found.z, 1, self.span, settings, heading=heading)
+        event = self.branches[origin[0]].events[origin[1]]
+        leaving = Point(start, heading, found.values, event.parameter, -step, 0, event.residual, DEPARTED)
+        trace = replace(trace, points=(leaving, *trace.points))
         told = f"left branch {origin[0]} at a {'period doubling' if kind == DOUBLED else 'branch point'}"
-        self._add(kind, problem, trace, told, origin)
+        self._add(kind, problem, trace, told, origin, watched.watched if watched else None)
 
     def _add(
-        self, kind: str, problem: HarmonicProblem, trace: Trace, started: str, parent: tuple[int, int] = (-1, -1)
+        self,
+        kind: str,
+        problem: HarmonicProblem,
+        trace: Trace,
+        started: str,
+        parent: tuple[int, int] = (-1, -1),
+        watched: BoolArray | None = None,
     ) -> None:
         ended = "joined the branch it left, or its copy" if trace.end is End.TERMINAL else trace.end.advice
-        if trace.points:
-            self.branches.append(Branch(kind, problem, trace.points, started, ended, parent))
+        if not trace.points:
+            return
+        branch = Branch(kind, problem, trace.points, started, ended, parent, watched)
+        if self.stability:
+            branch = replace(branch, points=with_hidden_events(problem, trace.points, branch.multipliers))
+        self.branches.append(branch)
 
 
 def _passes(branch: Branch, problem: HarmonicProblem, z: Array) -> bool:
@@ -228,8 +253,3 @@ def _around(branch: Branch, value: float) -> Iterator[tuple[Point, Point]]:
     for start, end in zip(branch.points[:-1], branch.points[1:], strict=True):
         if (start.z[-1] - value) * (end.z[-1] - value) <= 0 and start.z[-1] != end.z[-1]:
             yield start, end
-
-
-def folds(branch: Branch) -> list[Point]:
-    """The folds of a branch."""
-    return [point for point in branch.points if point.event == FOLD]

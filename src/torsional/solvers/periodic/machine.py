@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from torsional.engine import Engine
 from torsional.errors import ModelError
@@ -15,8 +16,10 @@ from torsional.solvers.campbell import full_load
 from torsional.solvers.operating import torque_places
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import HIGHEST_ORDER, periodic_response
+from torsional.solvers.periodic.response import HIGHEST_ORDER, Variation, periodic_response
 from torsional.system import assemble
+
+Range = tuple[float, float]
 
 ACROSS = 1e-6
 SPEEDS, TORQUES = 9, 65
@@ -25,10 +28,13 @@ SPEEDS, TORQUES = 9, 65
 
 def model_response(
     model: Model,
-    speed: tuple[float, float] | None = None,
-    torque: float | None = None,
+    speed: float | Range | None = None,
+    torque: float | Range | None = None,
     gear: str | int | None = None,
     *,
+    parameter: Variation | None = None,
+    span: Range | None = None,
+    at: ArrayLike = (),
     highest_order: float = HIGHEST_ORDER,
     base_order: float | None = None,
     depth: int = 2,
@@ -37,24 +43,71 @@ def model_response(
     """`periodic_response` of a ``model`` in one ``gear`` over a range of ``speed`` [rad/s] at one mean engine
     ``torque`` [Nm], or at full load where that is None.
 
+    Where the torque is a range and the speed a single one, branches are followed over the mean torque; with a
+    ``parameter`` both are single, and it is followed over its ``span``.  ``at``: values at which branches get points.
     Of the engine's orders those are taken that its cylinders have in common (every third of an evenly fired six), since
     on a stiff crankshaft the others cancel; with ``base_order`` 0.5 all are, and what was a bifurcation to twice the
     period is then rounded off by the small excitation at its own order.
     Raises ModelError for a model without engine, without laws, or that does not say where torque enters and leaves.
     """
-    low, high = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
-    load = engine_load(model, (low, high), torque, highest_order, base_order)
+    case = _case(model, speed, torque, parameter, span)
+    load = case.load(model, highest_order, base_order)
     data = periodic_response(
         assemble(model.powertrain(gear or None)),
         load,
-        (low, high),
+        case.span,
+        parameter=case.parameter,
         hold=model.landmarks.load,
+        speed=case.speed,
         highest_order=highest_order,
         base_order=base_order or load.base_order,
         depth=depth,
         stability=stability,
+        at=at,
     )
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+
+
+@dataclass(frozen=True)
+class _Case:
+    """What is followed over which span, and what is given once: ``speed`` [rad/s] and ``torque`` [Nm]."""
+
+    parameter: str | Variation
+    span: Range
+    speed: float | None = None
+    torque: float | None = None
+
+    def load(self, model: Model, highest_order: float, base_order: float | None) -> Load:
+        """The engine's load along the parameter."""
+        if self.parameter == "speed":
+            return engine_load(model, self.span, self.torque, highest_order, base_order)
+        assert self.speed is not None
+        span = self.span if self.parameter == "mean_torque" else (self.torque or 0.0,)
+        return engine_torque_load(model, self.speed, span, highest_order, base_order)
+
+
+def _case(
+    model: Model,
+    speed: float | Range | None,
+    torque: float | Range | None,
+    parameter: Variation | None,
+    span: Range | None,
+) -> _Case:
+    """The case asked for; ModelError unless one thing varies."""
+    if isinstance(torque, tuple) or parameter is not None:
+        if speed is None or isinstance(speed, tuple):
+            raise ModelError("one speed is wanted where something else varies", where="speed", found=str(speed))
+        if isinstance(torque, tuple):
+            if parameter is not None:
+                raise ModelError("one torque is wanted where something else varies", where="torque", found=str(torque))
+            return _Case("mean_torque", torque, float(speed))
+        if span is None or torque is None or parameter is None:
+            remedy = "give span=(from, to) and one torque"
+            raise ModelError("the parameter has no span, or the torque is missing", where="span", remedy=remedy)
+        return _Case(parameter, span, float(speed), float(torque))
+    if speed is not None and not isinstance(speed, tuple):
+        raise ModelError("nothing varies", where="speed", found=str(speed), remedy="give speed=(from, to)")
+    return _Case("speed", speed or model.operation.speed, None, torque)
 
 
 def common_order(model: Model, speed: float, torque: float) -> float:
@@ -93,12 +146,15 @@ def engine_load(
 
 
 def engine_torque_load(
-    model: Model, speed: float, torque: tuple[float, float], highest_order: float = HIGHEST_ORDER,
+    model: Model,
+    speed: float,
+    torque: Range | tuple[float],
+    highest_order: float = HIGHEST_ORDER,
     base_order: float | None = None,
 ) -> Load:
-    """The engine's load over mean torque [Nm] at one speed [rad/s]."""
+    """The engine's load over mean torque [Nm] at one speed [rad/s]; of a single torque it holds whatever varies."""
     engine = checked_engine(model)
-    torques = np.linspace(*torque, TORQUES)
+    torques = np.linspace(*torque, TORQUES) if len(torque) == 2 else np.array(torque)
     base = base_order or common_order(model, speed, float(torques.mean()))
     orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
     found = engine.excitation(model.landmarks.throws, speed, torques, orders)

@@ -5,20 +5,19 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import dataset
-from torsional.solvers.periodic.branches import Branch, Explorer
-from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
+from torsional.solvers.periodic.branches import NOT_BIFURCATIONS, Branch, Explorer
+from torsional.solvers.periodic.problem import BoolArray
+from torsional.solvers.periodic.stability import MARGIN
 from torsional.solvers.periodic.states import States, states
 
 QUANTITIES = {"speed": "speed", "mean_torque": "torque"}
-NAMES = {"fold": "fold", "period doubling": "period doubling", "branch point": "branch point"}
 
 
 def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) -> xr.Dataset:
     """All branches point by point, with tables of the branches and of their bifurcations."""
-    branches = explorer.branches or explorer.explored()
+    branches = explorer.branches
     orders = _orders(branches, explorer.setting.highest_order)
     found = [states(branch.problem, branch.scaled) for branch in branches]
     system = explorer.setting.split.system
@@ -29,13 +28,13 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
         "torque": ((*over, "element"), _laid(branches, [s.torque for s in found], orders), "torque"),
         "residual": (("point",), np.concatenate([[p.residual for p in b.points] for b in branches]), ""),
         "iterations": (("point",), np.concatenate([[p.iterations for p in b.points] for b in branches]), ""),
-        "event": (("point",), np.concatenate([[p.event for p in b.points] for b in branches]), ""),
+        "event": (("point",), np.concatenate([_events(branch) for branch in branches]), ""),
     }
     if stability:
         variables |= _stability(branches)
     value = np.concatenate([branch.values for branch in branches])
     speed = value if explorer.setting.speed is None else np.full(len(value), explorer.setting.speed)
-    data = dataset(
+    return dataset(
         variables | _tables(branches) | _bifurcations(explorer, branches, found),
         {
             "order": (orders, "engine_order"),
@@ -56,7 +55,6 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
         laws=list(explorer.setting.split.names),
         system_hash=system.hash,
     )
-    return data
 
 
 def data_unit(parameter: str) -> str:
@@ -89,12 +87,24 @@ def _mean_torques(explorer: Explorer, value: Array) -> Array:
 
 
 def _stability(branches: list[Branch]) -> dict[str, tuple[tuple[str, ...], object, str]]:
-    found = [branch_multipliers(branch.problem, branch.scaled) for branch in branches]
-    values = np.concatenate(found)
+    values = np.concatenate([branch.multipliers for branch in branches])
     return {
         "multiplier": (("point", "multiplier"), values, ""),
-        "stable": (("point",), ~(np.abs(values) > 1 + MARGIN).any(axis=1), ""),
+        "stable": (("point",), np.concatenate([_stable(branch) for branch in branches]), ""),
     }
+
+
+def _events(branch: Branch) -> list[str]:
+    """What each point is: a bifurcation, an end on another branch, or nothing particular."""
+    own = {id(point) for point in branch.events}
+    return [p.event if id(p) in own or p.event in NOT_BIFURCATIONS else "" for p in branch.points]
+
+
+def _stable(branch: Branch) -> BoolArray:
+    """Whether each point is stable; one where a multiplier is on the unit circle goes with a stable neighbour."""
+    inside = ~(np.abs(branch.multipliers) > 1 + MARGIN).any(axis=1)
+    beside = np.append(inside[1:], False) | np.append(False, inside[:-1])
+    return np.where([bool(point.event) for point in branch.points], beside | inside, inside)
 
 
 def _tables(branches: list[Branch]) -> dict[str, tuple[tuple[str, ...], object, str]]:
@@ -123,7 +133,3 @@ def _bifurcations(
         "on_branch": (dim, np.array([number for number, _ in rows], dtype=int), ""),
     }
 
-
-def every_hinge(explorer: Explorer) -> bool:
-    """Whether all laws are piecewise linear."""
-    return all(isinstance(law, Hinges) for law in explorer.setting.split.laws)

@@ -111,7 +111,19 @@ class HarmonicProblem:
     def half_order_block(self, z: Array) -> Array:
         """The linearised equations of the odd multiples of half the base order at a scaled point."""
         value = float(z[-1] * self.scale[-1])
+        if self.balance.remembers.any():
+            return self._odd_block(z, value)
         return np.asarray(half_order_block(self.frozen(value).balance, value, self.linearised(z)[3]))
+
+    def _odd_block(self, z: Array, value: float) -> Array:
+        """The same of laws that remember: what concerns the odd multiples in the equations of twice the period."""
+        frozen = self.frozen(value)
+        doubled = HarmonicProblem(frozen.setting, 0.5 * self.base_order)
+        harmonics = self.harmonics_of(z)
+        wide = np.zeros((harmonics.shape[0], 2 * harmonics.shape[1] - 1), dtype=complex)
+        wide[:, ::2] = harmonics
+        odd = WatchedProblem.of_odd(doubled).watched[:-1]
+        return np.asarray(doubled.linearised(doubled.point_of(wide, value))[1][np.ix_(odd, odd)])
 
     def linear_size(self, value: float) -> tuple[Array, Array]:
         """Mean angles (m,) and largest harmonics (m,) [rad] of the linear part with its references at a value."""

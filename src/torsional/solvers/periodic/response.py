@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from torsional.engine import Excitation
 from torsional.errors import ModelError
@@ -16,9 +17,11 @@ from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings
 from torsional.solvers.periodic.branches import TRACING, Explorer
 from torsional.solvers.periodic.equations import Split
+from torsional.solvers.periodic.isolated import seek_isolated
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.presented import presented
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
+from torsional.solvers.periodic.refined import refined
 from torsional.solvers.periodic.varied import VariedProblem
 from torsional.system import System
 
@@ -57,7 +60,9 @@ def periodic_response(
     base_order: float | None = None,
     depth: int = 2,
     stability: bool = True,
+    isolated: bool = False,
     settings: Settings = TRACING,
+    at: ArrayLike = (),
 ) -> xr.Dataset:
     """Branches of periodic motion of a ``system`` with laws over a ``span`` of the ``parameter``, nobody's guess needed.
 
@@ -66,6 +71,9 @@ def periodic_response(
     with order 0 as the mean, at one operating point or over speeds; ``hold``: the node that takes up the mean torque.
     Harmonics go up to ``highest_order``, in multiples of ``base_order`` (default: the largest that fits the excitation).
     ``depth``: how many times a branch may leave a branch.  Stability by Floquet multipliers where ``stability``.
+    ``at``: values of the parameter at which every branch that passes them gets a point.
+    ``isolated``: branches that hang together with none of these are sought as well, by continuation in torque and
+    amplitude and from motions in time.
 
     Dimensions: ``point`` along all branches in turn with coordinates speed, mean_torque, value and branch; ``angle``
     (point, order, node) [rad], ``twist`` [rad] and ``torque`` [Nm] (point, order, element) complex 0-peak with order 0
@@ -96,7 +104,12 @@ def periodic_response(
         base_order=base_order,
         depth=depth,
         settings=settings,
+        stability=stability,
     )
+    explorer.explored()
+    if isolated:
+        seek_isolated(explorer)
+    explorer.branches = [refined(branch, at) for branch in explorer.explored()]
     name, unit = (parameter.name, parameter.unit) if isinstance(parameter, Variation) else (parameter, "")
     return presented(explorer, name, unit, stability)
 
@@ -112,6 +125,7 @@ def explored(
     highest_order: float = HIGHEST_ORDER,
     base_order: float | None = None,
     depth: int = 2,
+    stability: bool = False,
     settings: Settings = TRACING,
 ) -> Explorer:
     """The branches themselves, as `periodic_response` presents them."""
@@ -136,7 +150,7 @@ def explored(
     if setting.harmonics(order) * order < order or order > highest_order:
         raise ModelError("the highest order is below the base order", where="highest_order", found=f"{highest_order:g}")
     setting = _scaled(setting, order, (low, high))
-    return Explorer(setting, order, (low, high), settings, depth, make=make)
+    return Explorer(setting, order, (low, high), settings, depth, stability, make=make)
 
 
 def _load(excitation: Excitation | Load, parameter: str | Variation, value: float) -> Load:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.balance import forces_along
+from torsional.numerics.continuation import Point
 from torsional.numerics.floquet import multipliers, ordered
 from torsional.numerics.floquet_remembering import monodromy_remembering
 from torsional.numerics.floquet_sampled import monodromy_sampled
@@ -18,6 +20,8 @@ from torsional.solvers.periodic.problem import HarmonicProblem
 
 SAMPLES = 512
 """Samples a period of laws that are not piecewise linear."""
+TORUS = "Neimark–Sacker"
+HALVINGS = 24
 MARGIN = 1e-6
 """A multiplier counts as outside of the unit circle beyond this excess."""
 
@@ -96,3 +100,56 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     stiffness = np.stack([t[1] for t in told], axis=1) - reference[:, 0]
     damping = np.stack([t[2] for t in told], axis=1) - reference[:, 1]
     return monodromy_sampled(_linear(split), stiffness, damping, 2 * np.pi / pace).matrix
+
+
+def with_hidden_events(
+    problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray
+) -> tuple[Point, ...]:
+    """The points with those bifurcations between them that only the multipliers show.
+
+    A complex pair that leaves the unit circle is a Neimark–Sacker bifurcation; a real multiplier that passes −1 where
+    no determinant was watched, as with laws that remember, a period doubling.
+    """
+    out = [points[0]]
+    for i in range(len(points) - 1):
+        start, end = points[i], points[i + 1]
+        if not (start.event or end.event):
+            for name, measure in (("period doubling", _beyond_minus_one), (TORUS, _pairs_outside)):
+                if measure(found[i]) != measure(found[i + 1]):
+                    out.append(_located(problem, start, end, name, measure))
+        out.append(end)
+    return tuple(out)
+
+
+def _pairs_outside(values: ComplexArray) -> int:
+    return int(np.count_nonzero((np.abs(values) > 1 + MARGIN) & (values.imag > 1e-3)))
+
+
+def _beyond_minus_one(values: ComplexArray) -> int:
+    return int(np.count_nonzero((values.real < -1 - MARGIN) & (np.abs(values.imag) < 1e-9)))
+
+
+def _located(
+    problem: HarmonicProblem, start: Point, end: Point, name: str, measure: Callable[[ComplexArray], int]
+) -> Point:
+    """The place between two points where the measure changes, by halving."""
+    low, high, was = start, end, measure(branch_multipliers(problem, start.z[None])[0])
+    for _ in range(HALVINGS):
+        way = high.z - low.z
+        found = problem.correct(low.z + 0.5 * way, way / np.linalg.norm(way))
+        if not found.converged:
+            break
+        middle = low._replace(
+            z=found.z,
+            tangent=found.tangent,
+            values=found.values,
+            parameter=float(found.z[-1] * problem.scale[-1]),
+            arclength=0.5 * (low.arclength + high.arclength),
+            iterations=found.iterations,
+            residual=found.residual,
+        )
+        if measure(branch_multipliers(problem, found.z[None])[0]) == was:
+            low = middle
+        else:
+            high = middle
+    return high._replace(event=name, within=float(np.linalg.norm(high.z - low.z)))

@@ -16,11 +16,13 @@ from torsional.solvers.periodic.problem import HarmonicProblem
 @dataclass(frozen=True, eq=False)
 class States:
     """Complex 0-peak harmonics of points: ``angle`` (points, H + 1, nodes) [rad], ``twist`` and ``torque`` (points,
-    H + 1, connections) [rad], [Nm]; harmonic 0 is the mean, with the node that takes up the mean torque at rest."""
+    H + 1, connections) [rad], [Nm], ``coordinates`` (points, H + 1, N) [rad]; harmonic 0 is the mean, with the node
+    that takes up the mean torque at rest."""
 
     angle: ComplexArray
     twist: ComplexArray
     torque: ComplexArray
+    coordinates: ComplexArray
 
 
 def law_forces(problem: HarmonicProblem, points: Array) -> ComplexArray:
@@ -34,7 +36,7 @@ def law_forces(problem: HarmonicProblem, points: Array) -> ComplexArray:
 def states(problem: HarmonicProblem, points: Array) -> States:
     """Everything that moves at scaled points (points, n + 1), from the linear part with the laws' torques as loads."""
     found = [_states(piece, points[run]) for run, piece in problem.pieces(points)]
-    return States(*(np.concatenate(parts) for parts in zip(*((s.angle, s.twist, s.torque) for s in found), strict=True)))
+    return States(*(np.concatenate(parts) for parts in zip(*((s.angle, s.twist, s.torque, s.coordinates) for s in found), strict=True)))
 
 
 def _states(problem: HarmonicProblem, points: Array) -> States:
@@ -45,7 +47,7 @@ def _states(problem: HarmonicProblem, points: Array) -> States:
     harmonics, force = problem.harmonics_of(points), law_forces(problem, points)
     omega = np.multiply.outer(speed, problem.base_order * np.arange(count + 1))
     reference = split.reference_stiffness[:, None] + 1j * omega[:, None] * split.reference_damping[:, None]
-    loads = _driving(problem, value) - np.einsum("pmh,mn->phn", force - reference * harmonics, split.weights)
+    loads = driving(problem, value) - np.einsum("pmh,mn->phn", force - reference * harmonics, split.weights)
     q = np.empty(loads.shape, dtype=complex)
     q[:, 0] = _mean(problem, loads[:, 0].real)
     q[:, 1:] = _vibration(problem, omega[:, 1:], speed, loads[:, 1:])
@@ -53,10 +55,10 @@ def _states(problem: HarmonicProblem, points: Array) -> States:
     torque = element_torques(split.system, omega.ravel(), turning, flat).reshape(*q.shape[:2], -1)
     torque[..., list(split.places)] += np.moveaxis(force, 1, 2)
     angle = node_angles(split.system, flat).reshape(*q.shape[:2], -1)
-    return States(angle, q @ split.system.connections.weights.T, torque)
+    return States(angle, q @ split.system.connections.weights.T, torque, q)
 
 
-def _driving(problem: HarmonicProblem, value: Array) -> ComplexArray:
+def driving(problem: HarmonicProblem, value: Array) -> ComplexArray:
     """Torques of the load on the coordinates (points, H + 1, N), the reaction to the mean included."""
     setting = problem.setting
     system, load = setting.split.system, setting.load

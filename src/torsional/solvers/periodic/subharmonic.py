@@ -61,7 +61,9 @@ def subharmonic_map(
     table = _Table(speeds, torques, system.connections.names.index(place), system.node_index(quiet))
     edges: list[tuple[float, Explorer]] = []
     for row, value in enumerate(torques):
-        explorer = Explorer(replace(first.setting, load=loads.at(float(value))), first.base_order, span, depth=1)
+        explorer = Explorer(
+            replace(first.setting, load=loads.at(float(value))), first.base_order, span, depth=1, stability=False
+        )
         explorer.explored()
         table.fill(row, explorer.branches)
         edges.append((float(value), explorer))
