@@ -11,7 +11,7 @@ from scipy.special import mathieu_a, mathieu_b
 from tests.validation.periodic_reference import Case, Stages, dmf12, flow, time_steady, two_stage
 
 from torsional.errors import ModelError
-from torsional.numerics.exponential import exponential
+from torsional.numerics.exponential import exponential, exponential_less_one
 from torsional.numerics.floquet import merged_crossings, monodromy, multipliers, ordered
 from torsional.numerics.floquet_sampled import monodromy_sampled
 from torsional.numerics.piecewise_basis import StageBases, coordinates
@@ -63,6 +63,14 @@ def test_exponential_of_a_rotation_with_growth(size: float) -> None:
     a, b = 0.1 * size, size
     expected = np.exp(a) * np.array([[np.cos(b), np.sin(b)], [-np.sin(b), np.cos(b)]])
     np.testing.assert_allclose(exponential(np.array([[a, b], [-b, a]])), expected, atol=2e-14 * np.exp(a) * (1 + size))
+
+
+def test_exponential_of_a_small_step_keeps_its_digits() -> None:
+    """cos b − 1 = −2 sin²(b/2), also where squarings come in."""
+    for b, tolerance in ((1e-7, 1e-15), (0.04, 1e-15), (30.0, 1e-13)):
+        gain = exponential_less_one(np.array([[0.0, b], [-b, 0.0]]))
+        assert gain[0, 0] == pytest.approx(-2.0 * np.sin(0.5 * b) ** 2, rel=tolerance)
+        assert gain[0, 1] == pytest.approx(np.sin(b), rel=10 * tolerance)
 
 
 # --- segment by segment ----------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Matrix exponential, compiled, so that compiled loops can call it."""
+"""Matrix exponential and linear equations, compiled, so that compiled loops can call them."""
 # mypy: disable-error-code="untyped-decorator"
 
 from __future__ import annotations
@@ -27,6 +27,84 @@ PADE = (
 )
 
 
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def solve(a: Array, b: Array) -> None:
+    """Overwrite b (n, columns) with a⁻¹ b by elimination with row exchanges, and a with its triangle.
+
+    Quicker to compile than a call of LAPACK with its messages, and for a few dozen unknowns no slower to run.
+    """
+    n = a.shape[0]
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            best = i if abs(a[i, k]) > abs(a[best, k]) else best
+        _exchange(a[k], a[best])
+        _exchange(b[k], b[best])
+        for i in range(k + 1, n):
+            ratio = a[i, k] / a[k, k]
+            _subtract(a[i], ratio, a[k])
+            _subtract(b[i], ratio, b[k])
+    for k in range(n - 1, -1, -1):
+        for i in range(k + 1, n):
+            _subtract(b[k], a[k, i], b[i])
+        for j in range(b.shape[1]):
+            b[k, j] /= a[k, k]
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _subtract(target: Array, factor: float, row: Array) -> None:
+    if factor != 0.0:
+        for j in range(target.size):
+            target[j] -= factor * row[j]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _exchange(one: Array, other: Array) -> None:
+    for j in range(one.size):
+        one[j], other[j] = other[j], one[j]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _sum(c6: float, a6: Array, c4: float, a4: Array, c2: float, a2: Array, c0: float) -> Array:
+    out = np.empty_like(a2)
+    for i in range(a2.shape[0]):
+        for j in range(a2.shape[1]):
+            out[i, j] = c6 * a6[i, j] + c4 * a4[i, j] + c2 * a2[i, j]
+        out[i, i] += c0
+    return out
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _scaled(matrix: Array) -> tuple[Array, int]:
+    """The matrix divided by so many powers of two that its 1-norm is within the approximant's reach."""
+    norm, squarings, share = 0.0, 0, 1.0
+    for j in range(matrix.shape[1]):
+        total = 0.0
+        for i in range(matrix.shape[0]):
+            total += abs(matrix[i, j])
+        norm = max(norm, total)
+    while norm * share > LARGEST and squarings < 1000:
+        share, squarings = 0.5 * share, squarings + 1
+    out = np.empty(matrix.shape)
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            out[i, j] = share * matrix[i, j]
+    return out, squarings
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _pade(a: Array) -> tuple[Array, Array]:
+    """Even and odd part p, q of the approximant (p − q)⁻¹ (p + q)."""
+    b = PADE
+    a2 = a @ a
+    a4 = a2 @ a2
+    a6 = a2 @ a4
+    odd = a6 @ _sum(b[13], a6, b[11], a4, b[9], a2, 0.0)
+    odd = a @ (odd + _sum(b[7], a6, b[5], a4, b[3], a2, b[1]))
+    even = a6 @ _sum(b[12], a6, b[10], a4, b[8], a2, 0.0) + _sum(b[6], a6, b[4], a4, b[2], a2, b[0])
+    return even, odd
+
+
 @numba.njit(cache=True, error_model="numpy")
 def exponential(matrix: Array) -> Array:
     """exp(A) of a real square matrix by scaling and squaring of the Padé approximant of degree 13.
@@ -38,18 +116,26 @@ def exponential(matrix: Array) -> Array:
     array([[1., 1.],
            [0., 1.]])
     """
-    norm, squarings, b = 0.0, 0, PADE
-    for j in range(matrix.shape[1]):
-        norm = max(norm, np.abs(matrix[:, j]).sum())
-    while norm > LARGEST:
-        norm, squarings = 0.5 * norm, squarings + 1
-    a, one = matrix / 2.0**squarings, np.eye(matrix.shape[0])
-    a2 = a @ a
-    a4 = a2 @ a2
-    a6 = a2 @ a4
-    odd = a @ (a6 @ (b[13] * a6 + b[11] * a4 + b[9] * a2) + b[7] * a6 + b[5] * a4 + b[3] * a2 + b[1] * one)
-    even = a6 @ (b[12] * a6 + b[10] * a4 + b[8] * a2) + b[6] * a6 + b[4] * a4 + b[2] * a2 + b[0] * one
-    grown = np.ascontiguousarray(np.linalg.solve(even - odd, even + odd))
+    scaled, squarings = _scaled(matrix)
+    even, odd = _pade(scaled)
+    below, grown = even - odd, even + odd
+    solve(below, grown)
     for _ in range(squarings):
         grown = grown @ grown
     return grown
+
+
+@numba.njit(cache=True, error_model="numpy")
+def exponential_less_one(matrix: Array) -> Array:
+    """exp(A) − 1 without the cancellation, for thousands of small steps z + (exp(A) − 1) z that must not drift.
+
+    >>> round(float(exponential_less_one(np.array([[1e-12]]))[0, 0] * 1e12), 6)
+    1.0
+    """
+    scaled, squarings = _scaled(matrix)
+    even, odd = _pade(scaled)
+    below, gain = even - odd, 2.0 * odd
+    solve(below, gain)
+    for _ in range(squarings):
+        gain = gain @ gain + 2.0 * gain
+    return gain

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.exponential import exponential
+from torsional.numerics.exponential import exponential, solve
 from torsional.numerics.piecewise_basis import Coordinates
 
 
@@ -87,8 +87,8 @@ def _torques(step: _Step, y: Array, stiffness: Array, damping: Array) -> Array:
             angle, rate, row = n + 2 * m * k + e, n + 2 * m * k + m + e, m * k + e
             right[row] = -(stiffness[k, e] * y[angle] + damping[k, e] * y[rate])
             system[row] += stiffness[k, e] * step.responses[angle] + damping[k, e] * step.responses[rate]
-    solved: Array = np.ascontiguousarray(np.linalg.solve(system, right))
-    return solved
+    solve(system, right)
+    return right
 
 
 @numba.njit(cache=True, error_model="numpy")
