@@ -9,7 +9,7 @@ import numpy as np
 
 from torsional.errors import ModelError, nearest
 from torsional.numerics.arrays import Array
-from torsional.numerics.curve_walk import Walk, point_at
+from torsional.numerics.curve_walk import Walk
 from torsional.numerics.curves import FOLD, Corrected, End, Point, Problem, Settings, Trace
 from torsional.numerics.equations import Equations, branch_test
 
@@ -143,13 +143,13 @@ def _checked(problem: Problem, start: Array, direction: int, span: tuple[float, 
     return start
 
 
-def _first(problem: Problem, start: Array, way: float, heading: Array | None, settings: Settings) -> Point | None:
+def _first(problem: Problem, start: Array, way: float, heading: Array | None, settings: Settings) -> Corrected | None:
     """The start corrected, its tangent along the way; at a fold, where the parameter cannot be held, near it."""
     axis = np.zeros(start.size)
     axis[-1] = way
     if heading is not None:
         got = problem.correct(start, way * heading / np.linalg.norm(heading))
-        return point_at(problem, got, 0.0) if got.converged else None
+        return got if got.converged else None
     random = np.random.default_rng(0).standard_normal((3, start.size))
     for normal in (axis, *(way * random / np.linalg.norm(random, axis=1)[:, np.newaxis])):
         got = problem.correct(start, normal)
@@ -159,4 +159,4 @@ def _first(problem: Problem, start: Array, way: float, heading: Array | None, se
         return None
     if got.tangent[-1] * way < 0.0:
         got = problem.correct(got.z, -got.tangent)
-    return point_at(problem, got, 0.0)
+    return got

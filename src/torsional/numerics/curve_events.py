@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from torsional.numerics.arrays import Array
-from torsional.numerics.curves import Corrected, Point, Problem
+import numpy as np
+
+from torsional.numerics.curve_shape import arc_between, cubic_between, share_of_fold
+from torsional.numerics.curves import FOLD, Corrected, Point, Problem, Settings
 
 MOST_CORRECTIONS = 80
 """Halving 0.5 down to rounding takes 52; smooth functions take three or four."""
+ELSEWHERE = (0.5, 0.25, 0.75, 0.1, 0.9)
+"""Shares of the way to try where the corrector fails."""
 
 Measure = Callable[[Point | Corrected], float]
 
@@ -39,44 +42,6 @@ def crosses(before: float, after: float) -> bool:
     return before < 0.0 <= after or before > 0.0 >= after
 
 
-def between(low: _Sample, high: _Sample, place: float, normal: Array) -> Array:
-    """The cubic through two points with their tangents, in the plane of z with normal · (z − first point) = place."""
-    length = high.place - low.place
-    u = (place - low.place) / length
-    rest = 1.0 - u
-    left = u * rest * rest * length / low.point.tangent.dot(normal)
-    right = -u * u * rest * length / high.point.tangent.dot(normal)
-    weight = u * u * (3.0 - 2.0 * u)
-    cubic: Array = (1.0 - weight) * low.point.z + weight * high.point.z
-    cubic += left * low.point.tangent + right * high.point.tangent
-    return cubic
-
-
-def guess_at(here: Point, there: Point | Corrected, share: float) -> Array:
-    """The cubic between two points, at a share of the way along the first one's tangent."""
-    length = here.tangent.dot(there.z - here.z)
-    return between(_Sample(0.0, 0.0, here), _Sample(length, 0.0, there), share * length, here.tangent)
-
-
-def share_of_fold(here: Point, there: Point | Corrected) -> float:
-    """Where the cubic of the parameter between two points has its extremum, as a share of the way."""
-    length = float(here.tangent.dot(there.z - here.z))
-    a = float(here.tangent[-1])
-    b = float(there.tangent[-1]) / float(there.tangent.dot(here.tangent))
-    slope = float(there.z[-1] - here.z[-1]) / length
-    return _root(a, 6.0 * slope - 4.0 * a - 2.0 * b, 3.0 * (a + b) - 6.0 * slope)
-
-
-def _root(c: float, b: float, a: float) -> float:
-    """The root of a u² + b u + c between 0 and 1, where its values there differ in sign; one half in case of doubt."""
-    discriminant = b * b - 4.0 * a * c
-    if discriminant < 0.0:
-        return 0.5
-    q = -0.5 * (b + math.copysign(math.sqrt(discriminant), b))
-    roots = [root for root in (c / q if q else 0.5, q / a if a else 0.5) if 0.0 < root < 1.0]
-    return roots[0] if roots else 0.5
-
-
 def locate(
     problem: Problem,
     here: Point,
@@ -87,30 +52,29 @@ def locate(
 ) -> Located:
     """The point between two at which a measure of points is zero, of which it has different signs at the two.
 
-    Places are counted along the tangent of the first; each sample is corrected from the cubic between the nearest two.
-    Inverse quadratic interpolation where it is safe, else halves: Chandrupatla, Advances in Engineering Software 28
-    (1997) 145, doi 10.1016/S0965-9978(96)00051-8.  Where the corrector fails, the nearest point it found is given.
+    Places are counted along the tangent of the first, a first guess is a ``share`` of the way; each sample is corrected
+    from the cubic between the two nearest.  Inverse quadratic interpolation where it is safe, else halves: Chandrupatla
+    in Advances in Engineering Software 28 (1997) 145, doi 10.1016/S0965-9978(96)00051-8.  Where the corrector fails,
+    the nearest point it found is given, with the distance to the other side as its error.
     """
     normal = here.tangent
     a = _Sample(0.0, measure(here), here)
     b = _Sample(float(normal.dot(there.z - here.z)), measure(there), there)
     if b.value == 0.0:
         return Located(there, 0.0)
-    c = a
+    c, failures = a, 0
     t = a.value / (a.value - b.value) if share is None else share
-    failures = 0
     for _ in range(MOST_CORRECTIONS):
-        place = a.place + t * (b.place - a.place)
-        got = problem.correct(between(a, b, place, normal), normal)
+        got = problem.correct(cubic_between(a.point, b.point, t, normal), normal)
         if not got.converged:
-            failures, t = failures + 1, (0.5, 0.25, 0.75, 0.1, 0.9)[min(failures, 4)]
-            if failures > 5:
+            if failures == len(ELSEWHERE):
                 break
+            t, failures = ELSEWHERE[failures], failures + 1
             continue
-        new = _Sample(place, measure(got), got)
+        new = _Sample(a.place + t * (b.place - a.place), measure(got), got)
         b, c = (b, a) if (new.value < 0.0) == (a.value < 0.0) else (a, b)
         a = new
-        if _error(a, b, c) <= tolerance or abs(b.place - a.place) <= tolerance:
+        if _error(a, b, c) <= tolerance:
             break
         t = _next(a, b, c, tolerance)
     best = min(a, b, key=lambda sample: abs(sample.value))
@@ -119,10 +83,12 @@ def locate(
 
 def _error(a: _Sample, b: _Sample, c: _Sample) -> float:
     """How far the zero may be from the newest sample, by the smaller of the two slopes next to it."""
-    inverse = abs((a.place - b.place) / (a.value - b.value)) if a.value != b.value else math.inf
+    if a.value == 0.0:
+        return 0.0
+    inverse = abs((a.place - b.place) / (a.value - b.value))
     if c.value != a.value:
         inverse = max(inverse, abs((a.place - c.place) / (a.value - c.value)))
-    return min(abs(a.value) * inverse if a.value else 0.0, abs(b.place - a.place))
+    return min(abs(a.value) * inverse, abs(b.place - a.place))
 
 
 def _next(a: _Sample, b: _Sample, c: _Sample, tolerance: float) -> float:
@@ -137,3 +103,50 @@ def _next(a: _Sample, b: _Sample, c: _Sample, tolerance: float) -> float:
     t = a.value / (b.value - a.value) * c.value / (b.value - c.value)
     t += (c.place - a.place) / (b.place - a.place) * a.value / (c.value - a.value) * b.value / (c.value - b.value)
     return min(max(t, least), 1.0 - least)
+
+
+class Watch:
+    """The events of a problem: their names, and for each the function of a point that is zero there."""
+
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        self.problem, self.settings = problem, settings
+        self.unit = float(problem.scale[-1])
+        tests = [(name, _value(number)) for number, name in enumerate(problem.tests)]
+        self.measures: list[tuple[str, Measure]] = [(FOLD, slope), *tests]
+
+    def point(self, got: Corrected | Point, arclength: float, event: str = "", within: float = 0.0) -> Point:
+        """What was corrected, as a point of the curve."""
+        parameter = got.z.item(got.z.size - 1) * self.unit
+        return Point(got.z, got.tangent, got.values, parameter, arclength, got.iterations, got.residual, event, within)
+
+    def tolerance(self, here: Point, there: Point) -> float:
+        """How far a located point may be from the event, along the curve."""
+        return self.settings.tolerance * max(float(np.linalg.norm(there.z)), there.arclength - here.arclength)
+
+    def events(self, here: Point, there: Point) -> list[Point]:
+        """The events between two points in their order."""
+        found = []
+        for name, measure in self.measures:
+            if crosses(measure(here), measure(there)):
+                share = share_of_fold(here, there) if name == FOLD else None
+                found.append(self.located(here, there, name, measure, share))
+        return sorted(found, key=lambda point: point.arclength)
+
+    def located(self, here: Point, there: Point, name: str, measure: Measure, share: float | None = None) -> Point:
+        """One event between two points."""
+        found = locate(self.problem, here, there, measure, self.tolerance(here, there), share)
+        return self.point(found.point, here.arclength + arc_between(here, found.point), name, found.within)
+
+
+def slope(point: Point | Corrected) -> float:
+    """The parameter's part of the tangent: zero at a fold."""
+    return point.tangent.item(point.tangent.size - 1)
+
+
+def _value(number: int) -> Measure:
+    """One test function's value at a point."""
+
+    def value(point: Point | Corrected) -> float:
+        return point.values.item(number)
+
+    return value

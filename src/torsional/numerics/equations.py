@@ -156,12 +156,12 @@ def _tangent(bordered: Array) -> Array:
     last = np.zeros(len(bordered))
     last[-1] = 1.0
     try:
-        found: Array = np.linalg.solve(bordered, last)
+        found = np.linalg.solve(bordered, last).astype(float)
         length = float(np.sqrt(found.dot(found)))
     except np.linalg.LinAlgError:
         length = np.inf
     if length < 1e6:
-        return found / length
+        return np.asarray(found / length)
     # The last row lies among the others: a fold met with p held.
-    null = np.asarray(np.linalg.svd(bordered[:-1])[2][-1], dtype=float)
+    null: Array = np.linalg.svd(bordered[:-1])[2][-1].astype(float)
     return null if null.dot(bordered[-1]) >= 0.0 else -null
