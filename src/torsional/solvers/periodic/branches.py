@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.continuation import End, Point, Settings, Trace, both_ways, followed
 from torsional.solvers.periodic.problem import JOINED, BoolArray, HarmonicProblem, Setting, WatchedProblem
@@ -18,8 +19,8 @@ MAIN, DOUBLED, BROKEN, CROSSED, ISOLATED = "main", "period doubling", "symmetry 
 TRACING = Settings(first_step=0.01, largest_step=0.1, largest_angle=0.35, most_points=2000)
 DEPARTED = "departed"
 NOT_BIFURCATIONS = ("", JOINED, DEPARTED)
-DEPART = 0.02
-"""First step onto a branch that leaves another, in scaled angles."""
+DEPARTURES = (0.02, 0.005, 0.001, 1e-4, 0.08)
+"""First steps onto a branch that leaves another, in scaled angles, in the order in which they are tried."""
 NEAR = 1e-2
 """Scaled distance from the branch that another leaves within which nothing more is looked for on that one."""
 ALIKE = 1e-6
@@ -81,6 +82,8 @@ class Explorer:
     depth: int = 2
     stability: bool = True
     branches: list[Branch] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
+    """Departures that could not be followed, in words."""
     make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
 
     def problem(self, base_order: float) -> HarmonicProblem:
@@ -106,7 +109,13 @@ class Explorer:
         problem = self.problem(self.base_order)
         low, high = self.span
         for value, direction in ((low, 1), (high, -1)):
-            start = first_solution(problem, value)
+            try:
+                start = first_solution(problem, value)
+            except ModelError as error:
+                if not self.branches:
+                    raise
+                self.lost.append(str(error))
+                continue
             if self.known(problem, start):
                 continue
             trace = followed(problem, start, direction, self.span, self.settings)
@@ -187,17 +196,19 @@ class Explorer:
         origin: tuple[int, int],
     ) -> None:
         heading = heading / np.linalg.norm(heading)
-        for step in (DEPART, 0.25 * DEPART, 4.0 * DEPART):
+        event = self.branches[origin[0]].events[origin[1]]
+        for step in DEPARTURES:
             found = problem.correct(start + step * heading, heading)
             if found.converged and self.span[0] <= found.z[-1] * problem.scale[-1] <= self.span[1]:
                 break
         else:
+            place = f"{event.event} at {event.parameter:g} of branch {origin[0]}"
+            self.lost.append(f"{place}: no point of the branch that leaves there was found")
             return
-        if kind == CROSSED and self.known(problem, found.z):
+        if self.known(problem, found.z):
             return
         settings = replace(self.settings, terminal=(JOINED,) if watched else ())
         trace = followed(watched or problem, found.z, 1, self.span, settings, heading=heading)
-        event = self.branches[origin[0]].events[origin[1]]
         leaving = Point(start, heading, found.values, event.parameter, -step, 0, event.residual, DEPARTED)
         trace = replace(trace, points=(leaving, *trace.points))
         told = f"left branch {origin[0]} at a {'period doubling' if kind == DOUBLED else 'branch point'}"

@@ -45,9 +45,9 @@ class Split:
                 remedy="a linear system is a matter for harmonic_response" if not count else "replace some by springs",
             )
         if self.kin is not None:
-            self.__dict__ |= {name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")}
+            self.__dict__.update({name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")})
             if self.system.shares_linear_part(self.kin.system):
-                self.__dict__ |= {name: getattr(self.kin, name) for name in ("matrices", "poles", "rigid")}
+                self.__dict__.update({name: getattr(self.kin, name) for name in ("matrices", "poles", "rigid")})
 
     @cached_property
     def places(self) -> tuple[int, ...]:

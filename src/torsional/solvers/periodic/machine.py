@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from torsional.engine import Engine
 from torsional.errors import ModelError
+from torsional.files import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.campbell import full_load
@@ -22,6 +23,7 @@ from torsional.system import assemble
 Range = tuple[float, float]
 
 ACROSS = 1e-6
+NARROW = 1e-3
 SPEEDS, TORQUES = 9, 65
 """Operating points that the engine is asked for: over speed it is a parabola, over torque it has corners."""
 
@@ -108,6 +110,45 @@ def _case(
     if speed is not None and not isinstance(speed, tuple):
         raise ModelError("nothing varies", where="speed", found=str(speed), remedy="give speed=(from, to)")
     return _Case("speed", speed or model.operation.speed, None, torque)
+
+
+def varied_response(
+    model: Model,
+    path: str,
+    span: tuple[float, float],
+    speed: float,
+    torque: float,
+    gear: str | int | None = None,
+    *,
+    highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+    depth: int = 2,
+    stability: bool = True,
+    isolated: bool = False,
+) -> xr.Dataset:
+    """`periodic_response` of a ``model`` over a value of its file, or over the mean torque, at one ``speed`` [rad/s].
+
+    ``path`` names the value, as in ``absorber.stages.1.stiffness``, and ``span`` its range in SI units; "torque" stands
+    for the mean engine torque [Nm].  Raises ModelError as `model_response` does, and for a path the model does not have.
+    """
+    settings = {"highest_order": highest_order, "depth": depth, "stability": stability, "isolated": isolated}
+    system, hold = assemble(model.powertrain(gear or None)), model.landmarks.load
+    if path == "torque":
+        load = engine_torque_load(model, speed, span, highest_order, base_order)
+        parameter: str | Variation = "mean_torque"
+    else:
+
+        def build(value: float) -> System:
+            return assemble(changed(model, {path: value}).powertrain(gear or None))
+
+        near = engine_load(model, (speed * (1 - NARROW), speed * (1 + NARROW)), torque, highest_order, base_order)
+        load = Load.polynomial(near.nodes, near.orders, np.array([span[0]]), near.at(speed)[None])
+        parameter = Variation(path, "", build)
+    base = base_order or load.base_order
+    data = periodic_response(
+        system, load, span, parameter=parameter, hold=hold, speed=speed, base_order=base, **settings
+    )  # type: ignore[arg-type]
+    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
 
 
 def common_order(model: Model, speed: float, torque: float) -> float:

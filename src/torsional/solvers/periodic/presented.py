@@ -53,6 +53,7 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
         main_order=explorer.base_order,
         highest_order=explorer.setting.highest_order,
         laws=list(explorer.setting.split.names),
+        not_followed=explorer.lost,
         system_hash=system.hash,
     )
 

@@ -109,7 +109,7 @@ def periodic_response(
     explorer.explored()
     if isolated:
         seek_isolated(explorer)
-    explorer.branches = [refined(branch, at) for branch in explorer.explored()]
+    explorer.branches = [refined(branch, at) for branch in explorer.branches]
     name, unit = (parameter.name, parameter.unit) if isinstance(parameter, Variation) else (parameter, "")
     return presented(explorer, name, unit, stability)
 

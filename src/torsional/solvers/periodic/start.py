@@ -59,16 +59,18 @@ def static_angles(setting: Setting, value: float) -> Array:
 
 def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The static state; and the same moved by a tenth of the scale, for one that lies exactly on a corner."""
-    static = static_angles(problem.setting, value)
+    setting = problem.frozen(value).setting
+    static = static_angles(setting, value)
     for shift in (0.0, 0.1, -0.1):
         at = np.zeros((static.size, 1), dtype=complex)
-        at[:, 0] = static + shift * problem.setting.angle_scale
+        at[:, 0] = static + shift * setting.angle_scale
         yield problem.point_of(at, value)
 
 
 def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the amplitude of the vibration, from the static state."""
-    setting, torque = problem.setting, problem.setting.load.at(value)
+    setting = problem.frozen(value).setting
+    torque = setting.load.at(value)
     mean = np.where(setting.load.orders == 0, torque, 0.0)
     load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0, 1.0]), np.stack([mean, torque]))
     speed = value if setting.speed is None else setting.speed
@@ -83,7 +85,8 @@ def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
 
 def _lighter(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the mean torque, from one high above where the law is met in another place."""
-    setting, torque = problem.setting, problem.setting.load.at(value)
+    setting = problem.frozen(value).setting
+    torque = setting.load.at(value)
     mean = np.where(setting.load.orders == 0, torque, 0.0)
     if not mean.any():
         return

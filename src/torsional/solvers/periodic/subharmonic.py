@@ -12,10 +12,9 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.balance import corrected_at
-from torsional.numerics.continuation import FOLD, Point
 from torsional.results import dataset
 from torsional.solvers.periodic.branches import MAIN, Branch, Explorer
-from torsional.solvers.periodic.curves import DOUBLING, bifurcation_curve
+from torsional.solvers.periodic.boundary import curve_variables, region_curves
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
 from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
@@ -67,7 +66,7 @@ def subharmonic_map(
         explorer.explored()
         table.fill(row, explorer.branches)
         edges.append((float(value), explorer))
-    curves = _boundary(edges, loads, span) if boundary else []
+    curves = region_curves(edges, loads.problem, span) if boundary else []
     data = table.presented(curves, place, quiet, 0.5 * first.base_order)
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
 
@@ -106,9 +105,7 @@ class _Table:
 
     def presented(self, curves: list[tuple[str, Array]], element: str, node: str, order: float) -> xr.Dataset:
         """The Dataset."""
-        over, along = ("torque", "speed"), ("boundary_point",)
-        points = np.concatenate([curve for _, curve in curves]) if curves else np.zeros((0, 2))
-        sizes = [len(curve) for _, curve in curves]
+        over = ("torque", "speed")
         return dataset(
             {
                 "amplitude": (over, self.amplitude, "torque"),
@@ -116,11 +113,8 @@ class _Table:
                 "acceleration": (over, self.acceleration, "acceleration"),
                 "solutions": (over, self.solutions, ""),
                 "stable_solutions": (over, self.stable, ""),
-                "boundary_speed": (along, points[:, 0], "speed"),
-                "boundary_torque": (along, points[:, 1], "torque"),
-                "boundary_kind": (along, np.repeat([kind for kind, _ in curves], sizes).astype(str), ""),
-                "boundary_curve": (along, np.repeat(np.arange(len(curves)), sizes), ""),
-            },
+            }
+            | curve_variables(curves, "torque", "torque"),
             {"torque": (self.torques, "torque"), "speed": (self.speeds, "speed")},
             analysis="subharmonic map",
             amplitude="0-peak of the sub-harmonic order",
@@ -155,48 +149,3 @@ def stable_stretches(branch: Branch) -> BoolArray:
         points = scaled[probes] if end > start + 1 else 0.5 * (scaled[[start]] + scaled[[end]])
         stable[start:end] = (np.abs(branch_multipliers(branch.problem, points)) <= 1 + MARGIN).all()
     return stable
-
-
-def _boundary(
-    edges: list[tuple[float, Explorer]], loads: EngineLoads, span: tuple[float, float]
-) -> list[tuple[str, Array]]:
-    """Curves (speed, torque) of period doublings of the main branches and folds of the doubled ones, each once."""
-    curves: list[tuple[str, Array]] = []
-    torques = (edges[0][0], edges[-1][0])
-    for torque, explorer in edges:
-        for branch in explorer.branches:
-            for event in branch.events:
-                kind = event.event
-                wanted = kind == DOUBLING if branch.kind == MAIN else kind == FOLD
-                if wanted and not _on(curves, kind, event, torque, span, torques):
-                    problem = branch.problem
-
-                    def family(value: float, problem: HarmonicProblem = problem) -> HarmonicProblem:
-                        return loads.problem(problem, value)
-
-                    trace = bifurcation_curve(family, event, torque, span, torques)
-                    points = np.array([[p.z[-2] * problem.scale[-1], p.parameter] for p in trace.points])
-                    curves.append((kind, points))
-    return curves
-
-
-def _on(
-    curves: list[tuple[str, Array]],
-    kind: str,
-    event: Point,
-    torque: float,
-    span: tuple[float, float],
-    torques: tuple[float, float],
-) -> bool:
-    """Whether an event lies on a curve that is known already."""
-    size = np.array([span[1] - span[0], torques[1] - torques[0]])
-    at = np.array([event.parameter, torque]) / size
-    for known, curve in curves:
-        if known != kind or len(curve) < 2:
-            continue
-        start, step = curve[:-1] / size, np.diff(curve / size, axis=0)
-        length = np.maximum((step**2).sum(axis=1), 1e-30)
-        share = np.clip(((at - start) * step).sum(axis=1) / length, 0, 1)
-        if np.linalg.norm(start + share[:, None] * step - at, axis=1).min() < 5e-3:
-            return True
-    return False

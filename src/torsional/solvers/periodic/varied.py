@@ -45,15 +45,19 @@ class VariedProblem(HarmonicProblem):
     def linearised(self, z: Array) -> tuple[Array, Array, Array, Array]:
         """Residual, Jacobian, derivative by the parameter and tangent spectra."""
         residual, jacobian, _, spectra = super().linearised(z)
+        return residual, jacobian, self._slope(z), spectra
+
+    def _slope(self, z: Array) -> Array:
+        """Derivative of the residual by the parameter."""
         sides = [super(VariedProblem, self).linearised(np.append(z[:-1], z[-1] + s * NUDGE))[0] for s in (1, -1)]
-        return residual, jacobian, (sides[0] - sides[1]) / (2 * NUDGE * self.scale[-1]), spectra
+        return np.asarray((sides[0] - sides[1]) / (2 * NUDGE * self.scale[-1]))
 
     def correct(self, guess: Array, normal: Array) -> Corrected:
-        """Newton's method across a normal, as the compiled one."""
+        """Newton's method across a normal, as the compiled one; the derivative by the parameter is that of the guess."""
         z, tangent, values = guess.copy(), np.zeros_like(guess), np.zeros(len(self.tests))
-        size = last = np.inf
+        slope, size, last = self._slope(guess), np.inf, np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
-            residual, jacobian, slope, spectra = self.linearised(z)
+            residual, jacobian, _, spectra = super().linearised(z)
             rows = np.column_stack([jacobian * self.scale[:-1], slope * self.scale[-1]]) / self.scale[:-1, None]
             rows = np.vstack([rows, normal])
             step = np.append(residual / self.scale[:-1], normal @ (z - guess))
