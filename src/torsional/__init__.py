@@ -12,7 +12,8 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "absorbers": "CentrifugalPendulum Rollers cancellation_frequency dual_mass_flywheel planetary_dual_mass_flywheel "
-    "power_split_absorber single_mass_flywheel tuned_flange_flywheel tuned_secondary_flywheel with_pendulum",
+    "power_split_absorber single_mass_flywheel tuned_flange_flywheel tuned_secondary_flywheel with_friction "
+    "with_pendulum",
     "components": "Coupling Damper DistributedShaft GearPair Inertia PlanetSpin PlanetaryGear Shaft Superposition "
     "Tyre Vehicle",
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",

@@ -89,10 +89,15 @@ class Model:
 
     @property
     def mode_groups(self) -> dict[str, tuple[str, ...]]:
-        """Names of modes by the connections that hold most of their elastic energy, for `named_modes`."""
+        """Names of modes by the connections that hold most of their elastic energy, for `named_modes`.
+
+        Friction that sticks beside a spring counts with it.
+        """
         marks = self.landmarks
         found = {self.absorber_mode: marks.springs, "clutch mode": (marks.clutch,) if marks.clutch else ()}
-        return {name: members for name, members in found.items() if members}
+        rubbing = {name: [f"{member}_friction" for member in members] for name, members in found.items()}
+        beside = {name: tuple(part for part in parts if part in self.components) for name, parts in rubbing.items()}
+        return {name: (*members, *beside[name]) for name, members in found.items() if members}
 
     def powertrain(self, gear: str | int | None = None) -> Powertrain:
         """The powertrain with one gear engaged (default: the last listed)."""

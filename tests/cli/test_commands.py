@@ -344,3 +344,16 @@ def test_a_swing_across_a_stage_is_told(torsional: Run, truck: str) -> None:
     staged = torsional("respond", str(ROOT / "examples/truck_dmf_two_stage.yaml"), *asked)
     assert staged.err == f"{said}: 600 rpm to 700 rpm\n"
     assert torsional("respond", truck, *asked).err == ""
+
+
+def test_friction_that_slips_is_told(torsional: Run, truck: str) -> None:
+    """The washer sticks within ±0.1°, far less than the third order swings at 600 rpm; by a stiff clutch it is not."""
+    asked = ("--order", "3", "--speed", "600:700:100rpm", "--set", "clutch.friction_torque=60Nm")
+    slipping = torsional("respond", truck, *asked)
+    said = "warning: clutch_friction slips, where the linear response lets it stick"
+    assert slipping.err == f"{said}: 600 rpm to 700 rpm\n"
+    stiff = torsional("respond", truck, *asked, "--set", "clutch.stiffness=1 MNm/rad")
+    assert stiff.err == ""
+    told = torsional("check", truck, "--set", "clutch.friction_torque=60Nm")
+    row = next(line for line in told.out.splitlines() if line.startswith("clutch_friction"))
+    assert row.split() == ["clutch_friction", "0", "5.7296", "34.377", "sticks", "-"]

@@ -521,8 +521,8 @@ MACHINE = [
         "",
         (
             "components.shaft (line 5): the key 'type' is missing; allowed: inertia, vehicle, shaft, tyre, "
-            "damper, coupling, gear_pair, planetary_gear, superposition, planet_spin, distributed_shaft, "
-            "centrifugal_pendulum"
+            "damper, coupling, friction_washer, gear_pair, planetary_gear, superposition, planet_spin, "
+            "distributed_shaft, centrifugal_pendulum"
         ),
     ),
     (

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.report.conftest import example
 
+from torsional.files import changed
 from torsional.report.analysis import Comparison, analysed, continued, usable_speeds
 from torsional.report.finding import Finding
 from torsional.report.findings import findings
@@ -160,3 +161,13 @@ def test_speeds_stay_on_the_full_load_curve() -> None:
     truck = example("truck_dmf")
     wide = truck.replaced(operation=dataclasses.replace(truck.operation, speed=(400 * RPM, 2400 * RPM)))
     assert np.array(usable_speeds(wide)) / RPM == pytest.approx([600.0, 2000.0])
+
+
+def test_friction_that_slips_and_friction_that_sticks() -> None:
+    """A washer of 60 Nm sticks within ±0.1°; one of 60 kNm whatever the swing."""
+    pair = [changed(example("truck_dmf"), f"clutch.friction_torque={torque}") for torque in ("60 Nm", "60 kNm")]
+    (_, weak), (_, strong), _ = findings(analysed(pair, ["12"], 8, 4, lambda a, b: None))
+    slips = one(weak, "friction")
+    assert slips.values["from"] == pytest.approx(600 * RPM) and 1000 * RPM < slips.values["to"] < 2000 * RPM
+    assert "friction beside clutch slips at speeds between 600 rpm and" in slips.text
+    assert one(strong, "friction").values == {}

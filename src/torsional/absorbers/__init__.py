@@ -2,6 +2,7 @@
 
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.dual_mass import dual_mass_flywheel
+from torsional.absorbers.friction import with_friction
 from torsional.absorbers.pendulum import CentrifugalPendulum, Rollers, with_pendulum
 from torsional.absorbers.planetary import planetary_dual_mass_flywheel
 from torsional.absorbers.power_split import cancellation_frequency, power_split_absorber
@@ -20,5 +21,6 @@ __all__ = [
     "tuned_flange_flywheel",
     "tuned_secondary_flywheel",
     "tuned_stiffness",
+    "with_friction",
     "with_pendulum",
 ]

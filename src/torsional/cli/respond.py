@@ -16,7 +16,6 @@ from torsional.cli.modes import in_gear
 from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
-from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
@@ -80,16 +79,15 @@ def tables(data: xr.Dataset, title: str, chosen: bool = False) -> list[Table]:
 
 
 def _warn_crossed(model: Model, gear: str, found: xr.Dataset) -> None:
-    """Say where a spring's swing runs across a stage, its free play or its stop."""
+    """Say where a spring's swing runs across a stage, its free play or its stop, and where friction slips."""
     c = assemble(model.powertrain(gear or None)).connections
     for name, law in zip(c.names, c.laws, strict=True):
-        if isinstance(law, Hinges):
+        if law is not None:
             mean, half = found.mean_twist.sel(element=name), swing(found.twist.sel(element=name))
             at = found.speed.values[law.changes_within(mean - half, mean + half)]
             if len(at):
                 span = show(float(at[0]), "speed") + (f" to {show(float(at[-1]), 'speed')}" if len(at) > 1 else "")
-                told = "swings across a change of its stiffness, where the linear response is an approximation"
-                complain(f"{name} {told}: {span}", kind="warning")
+                complain(f"{name} {law.departs}: {span}", kind="warning")
 
 
 def _warn_unsolved(data: xr.Dataset) -> None:

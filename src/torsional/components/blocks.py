@@ -80,8 +80,18 @@ def torsional_damper(ring_inertia: float, hub_inertia: float, stiffness: float, 
     }
 
 
-def clutch(flywheel: str, law: Law, *, inertia: float, damping: float = 0.0, hub_stiffness: float) -> Parts:
+def clutch(
+    flywheel: str,
+    law: Law,
+    *,
+    inertia: float,
+    damping: float = 0.0,
+    hub_stiffness: float,
+    friction: Law | None = None,
+) -> Parts:
     """A closed clutch: the damper ``clutch`` from ``flywheel`` to ``clutch_disc``, ``clutch_hub`` to ``gearbox_input``.
+
+    A ``friction`` law stands beside the damper as ``clutch_friction``.
 
     >>> from torsional.laws import Hinges
     >>> sorted(clutch("flywheel", Hinges(25e3), inertia=0.09, damping=30.0, hub_stiffness=1.5e5))
@@ -89,6 +99,7 @@ def clutch(flywheel: str, law: Law, *, inertia: float, damping: float = 0.0, hub
     """
     return {
         "clutch": Coupling("clutch_disc", flywheel, law, damping),
+        **({"clutch_friction": Coupling("clutch_disc", flywheel, friction)} if friction else {}),
         "clutch_disc": Inertia(inertia),
         "clutch_hub": Shaft("gearbox_input", "clutch_disc", hub_stiffness),
     }

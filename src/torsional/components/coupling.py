@@ -15,6 +15,8 @@ from torsional.stamps import Connection
 class Coupling:
     """A force ``law`` between nodes ``a`` and ``b`` on φ = θ_b − θ_a, with viscous ``damping`` c [Nms/rad] beside it.
 
+    Laws that act together are couplings side by side: a friction washer beside a spring is one more.
+
     >>> from torsional.laws import Hinges
     >>> next(Coupling("primary", "secondary", Hinges(13e3), damping=20).stamps("springs")).stiffness
     13000.0

@@ -17,6 +17,7 @@ from torsional.files.schema import ModelFile
 from torsional.files.schema import absorber as schema
 from torsional.files.schema.fields import fitting
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox
+from torsional.files.schema.springs import Friction
 from torsional.model import Gear, Landmarks
 
 Parts = dict[str, Component]
@@ -124,6 +125,8 @@ def absorber(block: schema.AbsorberBlock) -> Absorber:
     """The absorber of a block, with its pendulum; ModelError names the key path."""
     try:
         concept = _CONCEPTS[type(block)](block)
+        washer = block.washer() if isinstance(block, Friction) else None
+        concept = absorbers.with_friction(concept, washer) if washer else concept
         return _hung(concept, block.pendulum) if block.pendulum else concept
     except ModelError as error:
         raise error.located(prefix="absorber") from None
@@ -186,7 +189,12 @@ def _hung(concept: Absorber, block: schema.PendulumBlock) -> Absorber:
 
 def _clutch(block: Clutch, flywheel: str) -> Parts:
     return groups.clutch(
-        flywheel, block.law(), inertia=block.inertia, damping=block.damping, hub_stiffness=block.hub_stiffness
+        flywheel,
+        block.law(),
+        inertia=block.inertia,
+        damping=block.damping,
+        hub_stiffness=block.hub_stiffness,
+        friction=block.washer(),
     )
 
 

@@ -23,7 +23,7 @@ from torsional.components import (
 )
 from torsional.errors import ModelError
 from torsional.files.schema.document import VERSION
-from torsional.laws import Hinges
+from torsional.laws import Hinges, Jenkins
 from torsional.model import Gear, Model
 from torsional.stamps import SpeedSwitch
 
@@ -89,7 +89,8 @@ def component_document(part: Component, name: str = "") -> dict[str, Any]:
     kind: Any = type(part)
     if kind not in _TYPES:
         raise ModelError("the file format has no such component", where=name, found=kind.__name__)
-    given: dict[str, Any] = {"type": _TYPES[kind]}
+    rubs = isinstance(part, Coupling) and isinstance(part.law, Jenkins)
+    given: dict[str, Any] = {"type": "friction_washer" if rubs else _TYPES[kind]}
     for field in dataclasses.fields(kind):
         value = getattr(part, field.name)
         if value != field.default:
@@ -109,7 +110,9 @@ def _plain(value: Any) -> Any:
 
 
 def _law(law: object, name: str) -> dict[str, Any]:
-    """A spring without hinges by its stiffness, any other hinge by hinge."""
+    """Friction by its torque and stiffness, a spring without hinges by its stiffness, any other hinge by hinge."""
+    if isinstance(law, Jenkins):
+        return {"friction_torque": law.limit_torque, "friction_stiffness": law.stiffness}
     if not isinstance(law, Hinges):
         raise ModelError("the file format has no such law", where=name, found=type(law).__name__)
     if not law.gaps:

@@ -63,6 +63,7 @@ _MAKERS: dict[type[Block], Callable[..., Component]] = {
     schema.ShaftPart: _shaft,
     schema.DamperPart: lambda b: made.Damper(b.a, b.b, b.damping),
     schema.CouplingPart: lambda b: made.Coupling(b.a, b.b, b.law(), b.damping),
+    schema.FrictionWasherPart: lambda b: made.Coupling(b.a, b.b, b.law(), b.damping),
     schema.GearPairPart: lambda b: made.GearPair(b.a, b.b, b.ratio),
     schema.PlanetaryGearPart: _planetary_gear,
     schema.SuperpositionPart: lambda b: made.Superposition(b.node, b.a, b.b, b.ratio),

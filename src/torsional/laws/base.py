@@ -74,8 +74,8 @@ class Law:
     kernel: ClassVar[Callable[..., Told]]
     remembers: ClassVar[bool] = False
     carries_mean_torque: ClassVar[bool] = True
-    departs: ClassVar[str] = "swings across a change of its stiffness"
-    """What happens where the law `changes_within` a swing, in words that follow the connection's name."""
+    departs: ClassVar[str] = "swings across a change of its stiffness, where the linear response is an approximation"
+    """What it means that the law `changes_within` a swing, in words that follow the connection's name."""
 
     @property
     def parameters(self) -> Array:

@@ -89,7 +89,7 @@ class Jenkins(Law):
     kernel: ClassVar[Callable[..., Told]] = jenkins_torque
     remembers: ClassVar[bool] = True
     carries_mean_torque: ClassVar[bool] = False
-    departs: ClassVar[str] = "slips"
+    departs: ClassVar[str] = "slips, where the linear response lets it stick"
 
     def __post_init__(self) -> None:
         not_negative(self.limit_torque, "limit_torque", "Nm")

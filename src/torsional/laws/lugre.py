@@ -105,7 +105,7 @@ class LuGre(Law):
     kernel: ClassVar[Callable[..., Told]] = lugre_torque
     remembers: ClassVar[bool] = True
     carries_mean_torque: ClassVar[bool] = False
-    departs: ClassVar[str] = "slips"
+    departs: ClassVar[str] = "slips, where the linear response lets it stick"
 
     def __post_init__(self) -> None:
         for name, unit in (("bristle_stiffness", "Nm/rad"), ("sliding_torque", "Nm"), ("stribeck_rate", "rad/s")):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,6 +19,13 @@ from torsional.units import show
 THICKNESS = 0.3
 TALLEST = 1.15
 SLANTED = {"rotation": 50, "fontsize": 7.5, "linespacing": 1.0, "zorder": 4}
+LOOKS: dict[str, Any] = {
+    "spring": "-",
+    "gear": (0, (1, 1)),
+    "damper": (0, (4, 2)),
+    "planets": "-.",
+    "friction": (0, (1, 2)),
+}
 PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.3}
 
 
@@ -71,9 +79,14 @@ def _draw_link(axes: Axes, line: Chain, link: Link, colour: str, beside: dict[fl
         (x1, y1), (x2, y2) = line.places[first], line.places[second]
         aside = 0.14 if x1 == x2 and link.kind != "spring" else 0.0  # a gear beside the spring of the same two nodes
         x, y = _zigzag(x1, y1, x2, y2) if link.kind == "spring" else (np.array([x1, x2]) - aside, np.array([y1, y2]))
-        look = {"spring": "-", "gear": (0, (1, 1)), "damper": (0, (4, 2)), "planets": "-."}[link.kind]
+        if link.kind == "friction":  # beside the spring of the same two nodes, along or upright
+            x, y = (
+                np.array([0.8 * x1 + 0.2 * x2, 0.2 * x1 + 0.8 * x2]),
+                np.array([0.8 * y1 + 0.2 * y2, 0.2 * y1 + 0.8 * y2]),
+            )
+            x, y = x + 0.3 * (x1 == x2), y - 0.3 * (x1 != x2)
         thick = {"gear": 3.0}.get(link.kind, 1.2)
-        axes.plot(x, y, color=colour, linestyle=look, linewidth=thick, zorder=2, gid=f"link-{link.kind}")
+        axes.plot(x, y, color=colour, linestyle=LOOKS[link.kind], linewidth=thick, zorder=2, gid=f"link-{link.kind}")
     if link.kind in ("spring", "gear"):
         detail = link.described if link.kind == "spring" else _speeds(line, link)
         text = style.readable(link.name) + (f"\n{detail}" if detail else "")

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from torsional.laws import Hinges, Law
+from torsional.laws import Hinges, Jenkins, Law
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND, Constraint, Mass, Stamp
 from torsional.units import show
@@ -17,7 +17,7 @@ from torsional.units import show
 
 @dataclass(frozen=True)
 class Link:
-    """What joins nodes: ``kind`` is spring, damper, gear or planets; ``law`` where it is not linear."""
+    """What joins nodes: ``kind`` is spring, friction, damper, gear or planets; ``law`` where it is not linear."""
 
     name: str
     kind: str
@@ -27,7 +27,12 @@ class Link:
 
     @property
     def described(self) -> str:
-        """Its stiffness as a label: 13 kNm/rad, or 8 / 24 kNm/rad for stages; empty where it has none."""
+        """Its stiffness as a label: 13 kNm/rad, or 8 / 24 kNm/rad for stages; empty where it has none.
+
+        Of a friction washer its torque as well.
+        """
+        if isinstance(self.law, Jenkins):
+            return f"{show(self.law.stiffness, 'stiffness')}, slips at {show(self.law.limit_torque, 'torque')}"
         values = stage_stiffnesses(self.law) if isinstance(self.law, Hinges) else [self.stiffness]
         if not any(values):
             return ""
@@ -92,6 +97,8 @@ def _link(stamp: Stamp) -> Link | None:
         return Link(stamp.name, "gear", nodes)
     if isinstance(stamp, Mass):
         return Link(stamp.name, "planets", nodes)
+    if stamp.law is not None and not stamp.law.carries_mean_torque and stamp.stiffness == 0:
+        return Link(stamp.name, "friction", nodes, law=stamp.law)
     elastic = stamp.stiffness > 0 or stamp.law is not None or stamp.centrifugal_stiffness > 0
     return Link(stamp.name, "spring" if elastic else "damper", nodes, stamp.stiffness, stamp.law)
 

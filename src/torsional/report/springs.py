@@ -11,11 +11,12 @@ from torsional.stamps import Connection
 
 @dataclass(frozen=True)
 class Spring:
-    """A connection with its ``law`` or linear ``stiffness`` [Nm/rad], and its ``stop`` in drive [rad]."""
+    """A connection with its ``law`` or linear ``stiffness`` [Nm/rad], the law of the ``friction`` beside it."""
 
     name: str
     law: Law | None
     stiffness: float
+    friction: Law | None = None
 
     @property
     def stop(self) -> float | None:
@@ -35,12 +36,14 @@ class Spring:
 
 
 def springs_of(variant: Variant) -> list[Spring]:
-    """The absorber's springs, and the clutch where it has stages or is the only spring."""
+    """The absorber's springs, and the clutch where it has stages or friction or is the only spring."""
     marks = variant.model.landmarks
     stamps = variant.model.powertrain(None).stamps
-    known = {s.name: Spring(s.name, s.law, s.stiffness) for s in stamps if isinstance(s, Connection)}
+    found = {s.name: s for s in stamps if isinstance(s, Connection)}
+    rubbing = {name: found[f"{name}_friction"].law for name in found if f"{name}_friction" in found}
+    known = {name: Spring(name, s.law, s.stiffness, rubbing.get(name)) for name, s in found.items()}
     chosen = [known[name] for name in marks.springs if name in known]
     clutch = known.get(marks.clutch)
-    if clutch is not None and clutch not in chosen and (clutch.law is not None or not chosen):
+    if clutch is not None and clutch not in chosen and (clutch.law or clutch.friction or not chosen):
         chosen.append(clutch)
     return chosen

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.laws import Hinges
+from torsional.numerics.arrays import Array
 from torsional.plots.layout import stage_angles
 from torsional.quantities import swing
 from torsional.report.analysis import Response, Variant, named
@@ -29,7 +30,7 @@ def travel(response: Response, spring: Spring) -> list[Finding]:
     if spring.stop is not None:
         values["stop"] = spring.stop
         text += _distance(spring.stop, extent)
-    return [Finding("travel", text, values), *_crossed(spring, data, name)]
+    return [Finding("travel", text, values), *_crossed(spring, data, name), *_slipping(spring, data, name)]
 
 
 def _distance(stop: float, extent: float) -> str:
@@ -57,11 +58,30 @@ def _crossed(spring: Spring, data: xr.Dataset, name: str) -> list[Finding]:
     crossed = np.any([(low < edge) & (edge < high) for edge in edges], axis=0) if edges else np.zeros(low.shape, bool)
     if not crossed.any():
         return []
-    first, last = (float(speed) for speed in data.speed.values[crossed][[0, -1]])
-    span = f"between {told(first, 'speed')} and {told(last, 'speed')}" if first < last else f"at {told(first, 'speed')}"
+    span, ends = _span(data, crossed)
     text = f"At full load {name} swings across a change of its stiffness at speeds {span}: the linear response is an "
     text += "approximation there, and sub-harmonic vibration may occur."
-    return [Finding("stages", text, {"from": first, "to": last})]
+    return [Finding("stages", text, ends)]
+
+
+def _slipping(spring: Spring, data: xr.Dataset, name: str) -> list[Finding]:
+    """Speeds at which the friction beside a spring slips at full load."""
+    if spring.friction is None:
+        return []
+    low, high = (data.mean_twist - data.swing).values, (data.mean_twist + data.swing).values
+    slips = spring.friction.changes_within(low, high)
+    if not slips.any():
+        return [Finding("friction", f"At full load the friction beside {name} sticks at all speeds.")]
+    span, ends = _span(data, slips)
+    text = f"At full load the friction beside {name} slips at speeds {span}: the linear response, which lets it stick, "
+    return [Finding("friction", text + "is too stiff and has too little damping there.", ends)]
+
+
+def _span(data: xr.Dataset, chosen: Array) -> tuple[str, dict[str, float]]:
+    """The chosen speeds from the first to the last, in words and as values."""
+    first, last = (float(speed) for speed in data.speed.values[chosen][[0, -1]])
+    span = f"between {told(first, 'speed')} and {told(last, 'speed')}" if first < last else f"at {told(first, 'speed')}"
+    return span, {"from": first, "to": last}
 
 
 def stage_modes(variant: Variant, spring: Spring) -> list[Finding]:

@@ -20,7 +20,7 @@ from torsional.files.schema.fields import (
     Speed,
     Stiffness,
 )
-from torsional.files.schema.springs import DampedSpring, Spring, check_spring
+from torsional.files.schema.springs import DampedSpring, Friction, Spring, check_spring
 
 Order = Annotated[float, Quantity("engine_order", above=0)]
 GearQuotient = Annotated[float, Quantity("ratio", above=0)]
@@ -96,7 +96,7 @@ class TunedAbsorber(Block):
         return self
 
 
-class TunedDualMassFlywheel(AbsorberBlock, Spring):
+class TunedDualMassFlywheel(AbsorberBlock, Spring, Friction):
     """A dual mass flywheel with a tuned absorber on an intermediate flange or on the secondary flywheel."""
 
     type: Literal["dual_mass_flywheel_with_tuned_absorber"]
@@ -123,6 +123,9 @@ class TunedDualMassFlywheel(AbsorberBlock, Spring):
         elif self.stiffness is not None or self.stages:
             remedy = "write them into primary_springs and secondary_springs"
             raise ModelError("with on: flange there are two rows of springs", where="stiffness", remedy=remedy)
+        elif self.friction_torque:
+            remedy = "write it as a component of type friction_washer, between the bodies that rub"
+            raise ModelError("with on: flange there are two rows of springs", where="friction_torque", remedy=remedy)
         return self
 
 

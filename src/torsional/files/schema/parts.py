@@ -22,8 +22,8 @@ from torsional.files.schema.fields import (
     Ratio,
     Stiffness,
 )
-from torsional.files.schema.springs import Spring, check_spring
-from torsional.laws import Hinges
+from torsional.files.schema.springs import Spring, check_spring, washer
+from torsional.laws import Hinges, Jenkins
 
 
 class Between(Block):
@@ -117,6 +117,21 @@ class CouplingPart(Between, Spring):
         return self.hinges.law() if self.hinges else super().law()
 
 
+class FrictionWasherPart(Between):
+    """Dry friction that sticks elastically before it slips."""
+
+    type: Literal["friction_washer"]
+    friction_torque: Annotated[float, Quantity("torque", above=0)] = Field(description="when it slips")
+    friction_stiffness: Stiffness | None = Field(
+        None, description="while it sticks; where none is given, such that it sticks within ±0.1°"
+    )
+    damping: Damping = 0.0
+
+    def law(self) -> Jenkins:
+        """The washer's law."""
+        return washer(self.friction_torque, self.friction_stiffness)
+
+
 class GearPairPart(Between):
     """Two meshing gears."""
 
@@ -181,6 +196,7 @@ Part = Annotated[
     | ShaftPart
     | DamperPart
     | CouplingPart
+    | FrictionWasherPart
     | GearPairPart
     | PlanetaryGearPart
     | SuperpositionPart

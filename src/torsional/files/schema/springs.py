@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from torsional.errors import ModelError
 from torsional.files.schema.fields import Block, Damping, Quantity, Stiffness, Torque
-from torsional.laws import Hinges
+from torsional.laws import Hinges, Jenkins
 
 Lash = Annotated[float, Quantity("relative_angle", least=0)]
 _ENDLESS = float("inf")
+STICKS_WITHIN = math.radians(0.1)
+"""Elastic twist [rad] at which a friction washer of no stated stiffness slips: an engineering judgement.
+
+Small against the degrees over which a damper works; the same for every torque, so that a weak washer is a weak spring.
+"""
 
 
 class Stage(Block):
@@ -48,10 +54,37 @@ class Spring(Block):
         return Hinges.staged(drive, coast=coast, lash=self.lash, stop_stiffness=self.stop_stiffness or 0.0)
 
 
-class DampedSpring(Spring):
-    """A spring with a viscous damper beside it."""
+class Friction(Block):
+    """A friction washer: dry friction that sticks elastically before it slips."""
+
+    friction_torque: Annotated[float, Quantity("torque", least=0)] = Field(
+        0.0, description="of a friction washer beside the springs, when it slips; none at zero"
+    )
+    friction_stiffness: Stiffness | None = Field(
+        None, description="of the washer while it sticks; where none is given, such that it sticks within ±0.1°"
+    )
+
+    @model_validator(mode="after")
+    def _rubs(self) -> Friction:
+        if self.friction_stiffness is not None and "friction_torque" not in self.model_fields_set:
+            remedy = "give the torque at which the washer slips"
+            raise ModelError("goes with friction_torque", where="friction_stiffness", remedy=remedy)
+        return self
+
+    def washer(self) -> Jenkins | None:
+        """The washer's law; None without friction."""
+        return washer(self.friction_torque, self.friction_stiffness) if self.friction_torque else None
+
+
+class DampedSpring(Spring, Friction):
+    """A spring with a viscous damper beside it, and a friction washer where there is one."""
 
     damping: Damping = Field(0.0, description="viscous, beside the spring")
+
+
+def washer(torque: float, stiffness: float | None) -> Jenkins:
+    """A friction washer's law, of a stiffness of its own or the one by default."""
+    return Jenkins(torque, stiffness or torque / STICKS_WITHIN)
 
 
 def check_spring(spring: Spring) -> None:
