@@ -26,8 +26,6 @@ from torsional.numerics.continuation import (
     followed,
     steps,
 )
-from torsional.numerics.curve_events import locate
-from torsional.numerics.curve_shape import share_of_fold
 
 ONES = [1.0, 1.0]
 
@@ -121,18 +119,14 @@ def test_a_vertical_tangent_without_a_turn_is_no_fold() -> None:
 
 
 def test_an_event_costs_few_corrections() -> None:
-    """Between the points on both sides of a fold, or of a zero of a test, three or four are enough."""
-    problem = scalar(hysteresis, tests={"level": lambda x, p: math.exp(x[0]) - 1.3})
-    points = followed(problem, np.array([-1.6, -2.0]), 1, (-2.0, 2.0)).points
-    slope, level = (lambda point: float(point.tangent[-1])), (lambda point: float(point.values[0]))
-    for number, point in enumerate(points):
-        if point.event:
-            counted, measure = Counted(problem), slope if point.event == "fold" else level
-            share = share_of_fold(points[number - 1], points[number + 1]) if point.event == "fold" else None
-            found = locate(counted, points[number - 1], points[number + 1], measure, 1e-9, share)
-            np.testing.assert_allclose(found.point.z, point.z, rtol=0, atol=1e-9)
-            assert counted.corrections <= 4
-    assert sum(point.event != "" for point in points) == 3
+    """Three for a fold, four for the zero of a test, beside the one of the step they were found in."""
+    counted = Counted(scalar(hysteresis, tests={"level": lambda x, p: math.exp(x[0]) - 1.3}))
+    costs, before = [], 0
+    for point in steps(counted, np.array([-1.6, -2.0]), 1, (-2.0, 2.0)):
+        costs += [(point.event, counted.corrections - before - 1)] if point.event else []
+        before = counted.corrections
+    assert [name for name, _ in costs] == ["fold", "level", "fold"]
+    assert all(cost <= (3 if name == "fold" else 4) for name, cost in costs)
 
 
 def bratu(intervals: int) -> Equations:
@@ -181,10 +175,11 @@ def test_the_fold_tends_to_that_of_the_differential_equation() -> None:
 
 def test_a_pitchfork_is_found_from_its_trivial_branch_and_left_by_a_heading() -> None:
     problem = scalar(lambda x, p: p * x - x**3, branch_points=True)
-    trivial = followed(problem, np.array([0.0, -1.0]), 1, (-1.0, 1.0))
-    (event,) = trivial.events
-    assert (event.event, trivial.end) == ("branch point", End.LEFT_RANGE)
-    np.testing.assert_allclose(event.z, 0.0, rtol=0, atol=1e-9)
+    for direction in (1, -1):
+        trivial = followed(problem, np.array([0.0, -direction]), direction, (-1.0, 1.0))
+        (event,) = trivial.events
+        assert (event.event, trivial.end) == ("branch point", End.LEFT_RANGE)
+        np.testing.assert_allclose(event.z, 0.0, rtol=0, atol=1e-9)
     for side in (1, -1):
         branch = followed(problem, np.array([0.02 * side, 0.0]), side, (-1.0, 1.0), heading=np.array([1.0, 0.0]))
         np.testing.assert_allclose(branch.physical[:, 0] ** 2, branch.parameter, rtol=0, atol=1e-9)
@@ -238,6 +233,30 @@ def test_a_jump_of_a_test_is_located_too() -> None:
     problem = scalar(lambda x, p: x - p, tests={"jump": lambda x, p: 1.0 if p < 0.3 else -2.0})
     (event,) = followed(problem, np.zeros(2), 1, (0.0, 1.0)).events
     assert event.parameter == pytest.approx(0.3, abs=2e-9)
+
+
+def test_an_event_at_an_accepted_point_comes_once() -> None:
+    line = scalar(lambda x, p: x - p)
+    place = followed(line, np.zeros(2), 1, (0.0, 1.0)).points[4].parameter
+    for sign in (1.0, -1.0):
+        problem = scalar(lambda x, p: x - p, tests={"here": lambda x, p, sign=sign: sign * (p - place)})
+        trace = followed(problem, np.zeros(2), 1, (0.0, 1.0))
+        assert named(trace) == [("here", pytest.approx(place, abs=1e-12))]
+        assert np.diff(trace.parameter).min() > 1e-3
+
+
+def test_an_event_in_a_hole_of_the_equations_is_given_its_doubt() -> None:
+    """No solution for |p − 0.3| < 1e-4, where a test is zero: the event is the nearest point that was found."""
+    problem = scalar(
+        lambda x, p: x - p if abs(p - 0.3) > 1e-4 else math.nan,
+        jacobian=lambda x, p: np.array([[1.0, -1.0]]),
+        tests={"hidden": lambda x, p: p - 0.3},
+    )
+    trace = followed(problem, np.zeros(2), 1, (0.0, 1.0))
+    assert (trace.end, [name for name, _ in named(trace)]) == (End.LEFT_RANGE, ["hidden"])
+    (event,) = trace.events
+    assert 1e-4 <= abs(event.parameter - 0.3) <= event.within < 0.3
+    assert event.z[0] == pytest.approx(event.parameter, abs=1e-12)
 
 
 def test_a_terminal_event_is_the_last_point() -> None:
@@ -318,12 +337,25 @@ def test_an_isola_beside_another_branch_closes() -> None:
     assert trace.physical[:, 0].min() == pytest.approx(0.9, abs=2e-3)
 
 
+def test_a_helix_is_not_closed_when_it_comes_by_its_start() -> None:
+    """The turns are 0.06 apart, less than a step."""
+    problem = Equations(
+        lambda x, p: np.array([x[0] - math.cos(p), x[1] - math.sin(p)]),
+        lambda x, p: np.array([[1.0, 0.0, math.sin(p)], [0.0, 1.0, -math.cos(p)]]),
+        scale=[1.0, 1.0, 100.0],
+    )
+    trace = followed(problem, np.array([1.0, 0.0, 0.0]), 1, (-1.0, 20.0))
+    assert (trace.end, trace.parameter[-1]) == (End.LEFT_RANGE, 20.0)
+    np.testing.assert_allclose(trace.physical[:, 0], np.cos(trace.parameter), rtol=0, atol=1e-9)
+
+
 def test_a_corner_is_turned() -> None:
     """x = max(p, 0): the tangent turns by 45° at once."""
     problem = scalar(lambda x, p: x - max(p, 0.0), jacobian=lambda x, p: np.array([[1.0, -1.0 if p > 0.0 else 0.0]]))
     trace = followed(problem, np.array([0.0, -1.0]), 1, (-1.0, 1.0))
     assert trace.end is End.LEFT_RANGE
     np.testing.assert_allclose(trace.physical[:, 0], np.maximum(trace.parameter, 0.0), rtol=0, atol=1e-12)
+    assert len(trace.points) < 40
 
 
 # --- where a trace begins and ends ---
@@ -346,25 +378,58 @@ def test_both_ways_joins_the_two_sides_in_order() -> None:
     assert all(point.tangent[1] > 0.0 for point in trace.points)
 
 
-def test_a_bound_just_beyond_a_fold_is_not_left() -> None:
-    trace = followed(circle(), np.array([1.0, 0.0]), 1, (-1.000001, 1.000001))
-    assert (trace.end, len(trace.events)) == (End.CLOSED, 2)
+@pytest.mark.parametrize("bound", [1.000001, 1.0])
+@pytest.mark.parametrize("angle", [0.01, 1.0, 2.0, 3.0, 4.0])
+def test_a_bound_that_a_fold_does_not_pass_is_not_left(bound: float, angle: float) -> None:
+    for direction in (1, -1):
+        trace = followed(circle(), np.array([math.cos(angle), math.sin(angle)]), direction, (-bound, bound))
+        assert (trace.end, len(trace.events)) == (End.CLOSED, 2)
 
 
-def test_a_bound_just_before_a_fold_is() -> None:
-    trace = followed(circle(), np.array([1.0, 0.0]), 1, (-0.999999, 0.999999))
+@pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8, 3e-9])
+def test_a_bound_just_before_a_fold_is_left(before: float) -> None:
+    trace = followed(circle(), np.array([1.0, 0.0]), 1, (-1.0, 1.0 - before))
     assert (trace.end, trace.events) == (End.LEFT_RANGE, ())
-    assert trace.points[-1].parameter == 0.999999
-    assert trace.points[-1].z[0] == pytest.approx(math.sqrt(1.0 - 0.999999**2), abs=1e-9)
+    assert trace.points[-1].parameter == 1.0 - before
+    assert trace.points[-1].z[0] == pytest.approx(math.sqrt((2.0 - before) * before), abs=2e-9)
 
 
-def test_equations_are_not_asked_beyond_the_bound_of_a_smooth_branch() -> None:
-    def residual(x: Array, p: float) -> Array:
-        return np.array([x[0] - p * p if p <= 1.0 else np.nan])
+@pytest.mark.parametrize("bound", [0.3849002, 0.386, 0.39])
+def test_a_bound_beyond_a_fold_does_not_lead_to_another_branch(bound: float) -> None:
+    """With p held there only the far branch is left: the curve reaches it by both folds, not by a jump."""
+    trace = followed(scalar(hysteresis), np.array([-1.2, -0.5]), 1, (-0.5, bound))
+    assert [name for name, _ in named(trace)] == ["fold", "fold"]
+    assert trace.points[-1].z[0] == pytest.approx(2.0 / math.sqrt(3.0), abs=5e-3)
+    assert turns(trace).max() <= Settings().largest_angle
 
-    trace = followed(Equations(residual, lambda x, p: np.array([[1.0, -2.0 * p]]), scale=ONES), np.zeros(2), 1, (-1, 1))
-    assert (trace.end, trace.points[-1].parameter) == (End.LEFT_RANGE, 1.0)
+
+def test_a_bound_met_without_warning_is_met_exactly() -> None:
+    """At the start of p = x² the first prediction does not grow; the point corrected from it is far outside."""
+    trace = followed(scalar(lambda x, p: p - x * x), np.zeros(2), 1, (-1.0, 1e-4))
+    assert (trace.end, trace.points[-1].parameter) == (End.LEFT_RANGE, 1e-4)
+    assert abs(trace.points[-1].z[0]) == pytest.approx(1e-2, abs=1e-14)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_equations_are_not_asked_beyond_the_bound_of_a_smooth_branch(direction: int) -> None:
+    problem = scalar(
+        lambda x, p: x - p**3 if abs(p) <= 1.0 else math.nan,
+        jacobian=lambda x, p: np.array([[1.0, -3.0 * p * p]]),
+    )
+    trace = followed(problem, np.zeros(2), direction, (-1.0, 1.0))
+    assert (trace.end, trace.points[-1].parameter) == (End.LEFT_RANGE, float(direction))
     assert len(trace.points) < 25
+
+
+def test_a_corrector_that_cannot_hold_the_parameter_still_ends_on_the_bound() -> None:
+    class Refusing(Counted):
+        def correct(self, guess: Array, normal: Array) -> Corrected:
+            got = super().correct(guess, normal)
+            return got._replace(converged=abs(normal[-1]) < 1.0 or self.corrections == 1)
+
+    trace = followed(Refusing(circle()), np.array([0.8, -0.6]), 1, (-0.7, 0.6))
+    assert (trace.end, trace.points[-1].parameter) == (End.LEFT_RANGE, 0.6)
+    assert trace.points[-1].z[0] == pytest.approx(0.8, abs=1e-9)
 
 
 def test_a_start_on_the_bound_leads_in_or_ends_at_once() -> None:
@@ -377,6 +442,15 @@ def test_a_start_on_the_bound_leads_in_or_ends_at_once() -> None:
 def test_a_poor_start_is_corrected_at_its_parameter() -> None:
     first = next(steps(circle(), np.array([0.2, 0.5])))
     np.testing.assert_allclose(first.z, [math.sqrt(0.75), 0.5], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("start", [(0.05, 1.003), (-0.05, 1.003), (0.0, 1.001), (0.1, 1.01), (0.1, -1.01)])
+def test_a_start_just_beyond_a_fold_begins_near_it_in_the_direction_asked_for(start: tuple[float, float]) -> None:
+    for direction in (1, -1):
+        trace = followed(circle(), np.array(start), direction)
+        assert (trace.end, len(trace.events)) == (End.CLOSED, 2)
+        assert direction * trace.points[0].tangent[1] > 0.0
+        np.testing.assert_allclose(trace.points[0].z, start, rtol=0, atol=0.1)
 
 
 def test_a_start_without_a_solution_fails() -> None:

@@ -50,7 +50,10 @@ class Problem(Protocol):
         ...
 
     def correct(self, guess: Array, normal: Array) -> Corrected:
-        """Newton's method on F(z) = 0 in the plane normal · (z − guess) = 0; an axis as normal holds that entry."""
+        """Newton's method on F(z) = 0 in the plane normal · (z − guess) = 0; an axis as normal holds that entry.
+
+        The arrays given back are the caller's to keep; ``guess`` and ``normal`` are left as they are.
+        """
         ...
 
 
@@ -96,7 +99,8 @@ class Settings:
     """How a curve is followed.  Lengths are arclengths in scaled variables, which are best of the order of one.
 
     ``first_step``, ``largest_step`` and ``smallest_step``; ``largest_angle`` [rad] between the tangents at successive
-    points, which keeps a step from reaching another branch and from passing over a pair of folds; ``most_points``;
+    points, which keeps a step from reaching another branch and from passing over a pair of folds (a turn still larger
+    within a hundred smallest steps is taken for a corner of the curve); ``most_points``, events not counted;
     ``tolerance`` of an event's place, relative to the size of z or of the step, whichever is larger; ``terminal`` the
     events that end the trace.  Raises ModelError where a setting contradicts itself or another.
 

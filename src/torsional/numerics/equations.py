@@ -152,16 +152,11 @@ class Equations:
 
 
 def _tangent(bordered: Array) -> Array:
-    """The null vector of all rows but the last, of length one, along the last row."""
+    """The null vector of all rows but the last, of length one, along the last row.
+
+    Exact also where the last row nearly lies among the others: the large error is along the null vector.
+    """
     last = np.zeros(len(bordered))
     last[-1] = 1.0
-    try:
-        found = np.linalg.solve(bordered, last).astype(float)
-        length = float(np.sqrt(found.dot(found)))
-    except np.linalg.LinAlgError:
-        length = np.inf
-    if length < 1e6:
-        return np.asarray(found / length)
-    # The last row lies among the others: a fold met with p held.
-    null: Array = np.linalg.svd(bordered[:-1])[2][-1].astype(float)
-    return null if null.dot(bordered[-1]) >= 0.0 else -null
+    found = np.linalg.solve(bordered, last)
+    return np.asarray(found / np.sqrt(found.dot(found)), dtype=float)
