@@ -439,6 +439,20 @@ def test_a_start_on_the_bound_leads_in_or_ends_at_once() -> None:
     assert (outward.end, len(outward.points)) == (End.LEFT_RANGE, 1)
 
 
+@given(st.floats(0.01, 100.0), st.floats(0.001, 1000.0))
+def test_a_start_on_the_bound_is_inside_whatever_the_rounding(bound: float, scale: float) -> None:
+    problem = scalar(lambda x, p: x - p, [bound, scale])
+    for rounded in (bound / scale, bound * (1.0 / scale), np.nextafter(bound / scale, np.inf)):
+        trace = followed(problem, np.array([1.0, rounded]), 1, (-bound, bound))
+        assert (trace.end, len(trace.points)) == (End.LEFT_RANGE, 1)
+
+
+def test_a_heading_out_of_the_span_ends_at_once() -> None:
+    trace = both_ways(circle(), np.array([0.8, 0.5]), (-0.55, 0.55), heading=np.array([1.0, 0.0]))
+    assert (trace.end, trace.began, len(trace.points)) == (End.LEFT_RANGE, None, 1)
+    assert trace.points[0].parameter == pytest.approx(0.6, abs=1e-12)
+
+
 def test_a_poor_start_is_corrected_at_its_parameter() -> None:
     first = next(steps(circle(), np.array([0.2, 0.5])))
     np.testing.assert_allclose(first.z, [math.sqrt(0.75), 0.5], rtol=0, atol=1e-12)

@@ -114,6 +114,8 @@ def both_ways(
     if not forward.points or forward.end is End.CLOSED:
         return forward
     first = forward.points[0]
+    if math.isnan(_snapped(problem, first.z, span)):  # a heading led out of the span
+        return forward
     backward = followed(problem, first.z, 1, span, settings, heading=-first.tangent)
     turned = [point._replace(tangent=-point.tangent, arclength=-point.arclength) for point in backward.points[:0:-1]]
     return Trace((*turned, *forward.points), forward.end, problem.scale, backward.end)
@@ -125,15 +127,14 @@ def _checked(problem: Problem, start: Array, direction: int, span: tuple[float, 
         raise ModelError(
             "must be finite, one for each scale", where="start", found=repr(start), allowed=f"{scale.shape}"
         )
+    found = repr(float(start[-1] * scale[-1]))
     if direction not in (1, -1):
         raise ModelError("must be 1 or -1", where="direction", found=repr(direction))
     if not span[0] < span[1]:
         raise ModelError("the lower bound must be below the upper one", where="span", found=repr(span))
-    parameter = float(start[-1] * scale[-1])
-    if not span[0] <= parameter <= span[1]:
-        raise ModelError(
-            "lies outside of the span", where="start", found=repr(parameter), allowed=f"{span[0]} to {span[1]}"
-        )
+    start[-1] = _snapped(problem, start, span)
+    if math.isnan(start[-1]):
+        raise ModelError("lies outside of the span", where="start", found=found, allowed=f"{span[0]} to {span[1]}")
     known = (FOLD, *problem.tests)
     for name in settings.terminal:
         if name not in known:
@@ -141,6 +142,15 @@ def _checked(problem: Problem, start: Array, direction: int, span: tuple[float, 
                 "is not an event of this problem", where="terminal", found=name, remedy=nearest(name, known)
             )
     return start
+
+
+def _snapped(problem: Problem, z: Array, span: tuple[float, float]) -> float:
+    """The scaled parameter, exactly on a bound that it equals but for rounding; NaN outside."""
+    p, unit = float(z[-1]), float(problem.scale[-1])
+    for bound in (span[0] / unit, span[1] / unit):
+        if math.isfinite(bound) and abs(p - bound) <= 1e-12 * max(1.0, abs(bound)):
+            return bound
+    return p if span[0] / unit < p < span[1] / unit else math.nan
 
 
 def _first(problem: Problem, start: Array, way: float, heading: Array | None, settings: Settings) -> Corrected | None:
