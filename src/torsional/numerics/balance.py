@@ -13,83 +13,12 @@ import numba
 import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance_data import Balance, harmonic_part, receptance_at, static_part
-from torsional.numerics.hinge_spectrum import hinge_spectrum
-from torsional.numerics.sampled_spectrum import remembered_spectrum, smooth_spectrum
-from torsional.numerics.small_linear import backsolve, factor, scaled_determinant
+from torsional.numerics.balance_data import Balance, harmonic_parts, receptances_at, static_part
+from torsional.numerics.balance_forces import force_harmonics
+from torsional.numerics.small_linear import backsolve, factor, row_norms, scaled_determinant
 
 MOST_ITERATIONS = 12
 ENOUGH = 1e-9
-
-
-@numba.njit(cache=True, error_model="numpy")
-def own_motion(z: Array, connection: int, connections: int, x: Array) -> None:
-    """Put (x_0, Re X_1, Im X_1, …) of one connection into x."""
-    x[0] = z[connection]
-    for h in range(1, x.size // 2 + 1):
-        at = connections * (2 * h - 1) + connection
-        x[2 * h - 1], x[2 * h] = z[at], z[at + connections]
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _toeplitz(stiffness: ComplexArray, rate: ComplexArray, pace: float, jacobian: ComplexArray) -> None:
-    """Derivatives of the force harmonics (rows k) by x_0, Re X_1, Im X_1, … from the spectra of the tangents."""
-    count = jacobian.shape[0]
-    dashed = rate.size > 0
-    for k in range(count):
-        for h in range(count):
-            near = stiffness[k - h] if k >= h else stiffness[h - k].conjugate()
-            far = stiffness[k + h]
-            if dashed:
-                turn = complex(0.0, h * pace)
-                near += turn * (rate[k - h] if k >= h else rate[h - k].conjugate())
-                far -= turn * rate[k + h]
-            if h == 0:
-                jacobian[k, 0] = near if k == 0 else near + far
-            elif k == 0:
-                jacobian[0, 2 * h - 1] = 0.5 * (near + far).real
-                jacobian[0, 2 * h] = -0.5 * (near - far).imag
-            else:
-                jacobian[k, 2 * h - 1] = near + far
-                jacobian[k, 2 * h] = complex(far.imag - near.imag, near.real - far.real)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def force_harmonics(
-    balance: Balance,
-    e: int,
-    z: Array,
-    speed: float,
-    force: ComplexArray,
-    jacobian: ComplexArray,
-    stiffness: ComplexArray,
-    rate: ComplexArray,
-    found: Array,
-) -> int:
-    """Harmonics of the law of connection e (H + 1,), their derivatives (H + 1, 2H + 1), tangent spectra, crossings."""
-    m, count = balance.reference_stiffness.size, force.size
-    x = np.empty(2 * count - 1)
-    own_motion(z, e, m, x)
-    law = balance.law_values[balance.law_start[e] : balance.law_start[e + 1]]
-    pace = balance.base_order * speed
-    if balance.address[e] == 0:
-        offset = np.empty_like(stiffness)
-        samples = balance.table @ x
-        crossed = hinge_spectrum(law, x, samples, stiffness, offset, found)
-        _toeplitz(stiffness, rate[:0], pace, jacobian)
-        for k in range(count):
-            total = -offset[k] if k == 0 else -2.0 * offset[k]
-            for j in range(x.size):
-                total += jacobian[k, j] * x[j]
-            force[k] = total
-        return crossed
-    if balance.remembers[e]:
-        remembered_spectrum(balance.address[e], law, x, balance.table, pace, force, jacobian)
-        stiffness[:], rate[:] = np.nan, np.nan
-    else:
-        smooth_spectrum(balance.address[e], law, x, balance.table, pace, force, stiffness, rate)
-        _toeplitz(stiffness, rate, pace, jacobian)
-    return 0
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -104,22 +33,28 @@ def equations(
     b, db = np.zeros((count, m), dtype=np.complex128), np.zeros((count, m), dtype=np.complex128)
     static_part(balance, p, b, db)
     g[0] = balance.static
-    for h in range(1, count):
-        harmonic_part(balance, h, p, speed, g, dg, b, db)
+    harmonic_parts(balance, p, speed, g, dg, b, db)
     force, own = np.empty((m, count), dtype=np.complex128), np.empty((m, count, 2 * count - 1), dtype=np.complex128)
     found = np.empty((0, 3))
     for e in range(m):
         force_harmonics(balance, e, z, speed, force[e], own[e], spectra[e, 0], spectra[e, 1], found)
-    _less_reference(balance, z, speed, force, own)
-    _gathered(balance, z, speed, (g, dg, b, db), force, own, residual, jacobian, slope)
+    by_speed = balance.by_speed * balance.base_order
+    _less_reference(balance.reference_stiffness, balance.reference_damping, z, balance.base_order * speed, force, own)
+    _values(balance.reference_damping, by_speed, z, g, dg, b, db, force, residual, slope)
+    _slopes(g, own, jacobian)
+
+
+# Arrays are handed on one by one: all of a balance at once takes longer to hand on than this to compute.
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _less_reference(balance: Balance, z: Array, speed: float, force: ComplexArray, own: ComplexArray) -> None:
+def _less_reference(
+    stiffness: Array, damping: Array, z: Array, pace: float, force: ComplexArray, own: ComplexArray
+) -> None:
     """Take the reference spring and damper off the force and its derivatives."""
     m, count = force.shape
     for e in range(m):
-        k, c = balance.reference_stiffness[e], balance.reference_damping[e] * balance.base_order * speed
+        k, c = stiffness[e], damping[e] * pace
         force[e, 0] -= k * z[e]
         own[e, 0, 0] -= k
         for h in range(1, count):
@@ -131,19 +66,19 @@ def _less_reference(balance: Balance, z: Array, speed: float, force: ComplexArra
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _gathered(
-    balance: Balance,
+def _values(
+    damping: Array,
+    by_speed: float,
     z: Array,
-    speed: float,
-    linear: tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray],
+    g: ComplexArray,
+    dg: ComplexArray,
+    b: ComplexArray,
+    db: ComplexArray,
     force: ComplexArray,
-    own: ComplexArray,
     residual: Array,
-    jacobian: Array,
     slope: Array,
 ) -> None:
-    """The real equations from the complex ones, connection by connection."""
-    g, dg, b, db = linear
+    """Residual and its derivative by the parameter; ``by_speed`` is ν where that is the speed, else 0."""
     m, count = force.shape
     for h in range(count):
         for e in range(m):
@@ -153,13 +88,21 @@ def _gathered(
             for f in range(m):
                 total += g[h, e, f] * force[f, h]
                 rise += dg[h, e, f] * force[f, h]
-                if balance.by_speed == 1 and h > 0:
+                if h > 0:
                     at = m * (2 * h - 1) + f
-                    pace = complex(0.0, h * balance.base_order * balance.reference_damping[f])
-                    rise -= g[h, e, f] * pace * complex(z[at], z[at + m])
+                    rise -= g[h, e, f] * complex(0.0, h * by_speed * damping[f]) * complex(z[at], z[at + m])
             residual[row], slope[row] = total.real, rise.real
             if h:
                 residual[row + m], slope[row + m] = total.imag, rise.imag
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _slopes(g: ComplexArray, own: ComplexArray, jacobian: Array) -> None:
+    """The Jacobian I + G dF in real form, connection by connection."""
+    m, count = own.shape[0], own.shape[1]
+    for h in range(count):
+        for e in range(m):
+            row = e if h == 0 else m * (2 * h - 1) + e
             for f in range(m):
                 through = g[h, e, f]
                 for j in range(2 * count - 1):
@@ -174,14 +117,14 @@ def _gathered(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _bordered(balance: Balance, jacobian: Array, slope: Array, normal: Array, a: Array) -> None:
+def bordered(scale: Array, jacobian: Array, slope: Array, normal: Array, a: Array) -> None:
     """Scaled equations with the normal as their last row."""
     n = slope.size
     for i in range(n):
-        inverse = 1.0 / balance.scale[i]
+        inverse = 1.0 / scale[i]
         for j in range(n):
-            a[i, j] = jacobian[i, j] * inverse * balance.scale[j]
-        a[i, n] = slope[i] * inverse * balance.scale[n]
+            a[i, j] = jacobian[i, j] * inverse * scale[j]
+        a[i, n] = slope[i] * inverse * scale[n]
     a[n] = normal
 
 
@@ -199,44 +142,43 @@ def corrected(
     m = balance.reference_stiffness.size
     spectra = np.empty((m, 2, n // m + 3), dtype=np.complex128)
     tangent, step, values = np.zeros(n + 1), np.empty(n + 1), np.zeros(tests)
-    size, last = np.inf, np.inf
+    norms, size, last = np.empty(n + 1), np.inf, np.inf
     for iteration in range(1, MOST_ITERATIONS + 1):
         equations(balance, z[:n] * balance.scale[:n], z[n] * balance.scale[n], residual, jacobian, slope, spectra)
-        _bordered(balance, jacobian, slope, normal, a)
+        bordered(balance.scale, jacobian, slope, normal, a)
         step[:n] = residual / balance.scale[:n]
         step[n] = normal @ (z - guess)
         size = np.abs(step).max()
-        if factor(a, order) == 0.0:
-            return z, tangent, iteration, size, False, values
+        row_norms(a, norms)
+        sign = factor(a, order)
+        if sign == 0.0:
+            break
         backsolve(a, order, step)
         change = np.abs(step).max()
         if not np.isfinite(change) or (iteration > 3 and change > 4.0 * last):
-            return z, tangent, iteration, size, False, values
+            break
         z -= step
         last = change
         if change <= ENOUGH:
             tangent[n] = 1.0
             backsolve(a, order, tangent)
             tangent /= np.sqrt(tangent @ tangent)
-            tested(balance, z, tangent, jacobian, slope, spectra, values)
+            if tests > 0:  # with the tangent in place of the normal the determinant is that much larger
+                values[0] = scaled_determinant(a, sign, norms) / (normal @ tangent)
+            if tests > 1:
+                values[1] = doubling_test(balance, z[n] * balance.scale[n], spectra)
             return z, tangent, iteration, size, True, values
     return z, tangent, MOST_ITERATIONS, size, False, values
 
 
 @numba.njit(cache=True, error_model="numpy")
-def tested(
-    balance: Balance, z: Array, tangent: Array, jacobian: Array, slope: Array, spectra: ComplexArray, values: Array
-) -> None:
-    """The bordered determinant (zero at branch points) and that of the odd half orders (zero at period doublings)."""
-    n = slope.size
-    order = np.empty(n + 1, dtype=np.int64)
-    if values.size > 0:
-        a = np.empty((n + 1, n + 1))
-        _bordered(balance, jacobian, slope, tangent, a)
-        values[0] = scaled_determinant(a, order)
-    if values.size > 1:
-        half = half_order_block(balance, z[n] * balance.scale[n], spectra)
-        values[1] = scaled_determinant(half, np.empty(half.shape[0], dtype=np.int64))
+def doubling_test(balance: Balance, p: float, spectra: ComplexArray) -> float:
+    """The scaled determinant of the odd half orders, zero at period doublings."""
+    half = half_order_block(balance, p, spectra)
+    norms = np.empty(half.shape[0])
+    row_norms(half, norms)
+    sign = factor(half, np.empty(half.shape[0], dtype=np.int64))
+    return scaled_determinant(half, sign, norms)
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -245,9 +187,9 @@ def half_order_block(balance: Balance, p: float, spectra: ComplexArray) -> Array
     m, count = spectra.shape[0], balance.half_orders
     speed = p if balance.by_speed == 1 else balance.fixed_speed
     block = np.zeros((2 * m * count, 2 * m * count))
-    g, dg = np.empty((m, m), dtype=np.complex128), np.empty((m, m), dtype=np.complex128)
+    g, dg = np.empty((count, m, m), dtype=np.complex128), np.empty((count, m, m), dtype=np.complex128)
+    receptances_at(balance, (np.arange(count) + 0.5) * balance.base_order, speed, g, dg)
     for i in range(count):
-        receptance_at(balance, (i + 0.5) * balance.base_order, speed, g, dg)
         for f in range(m):
             reference = balance.reference_damping[f] * balance.base_order * speed
             for j in range(count):
@@ -262,32 +204,12 @@ def half_order_block(balance: Balance, p: float, spectra: ComplexArray) -> Array
                 real, imaginary = near + far, complex(far.imag - near.imag, near.real - far.real)
                 for e in range(m):
                     row, column = 2 * m * i + e, 2 * m * j + f
-                    by_real, by_imaginary = g[e, f] * real, g[e, f] * imaginary
+                    by_real, by_imaginary = g[i, e, f] * real, g[i, e, f] * imaginary
                     block[row, column], block[row + m, column] = by_real.real, by_real.imag
                     block[row, column + m], block[row + m, column + m] = by_imaginary.real, by_imaginary.imag
     for i in range(2 * m * count):
         block[i, i] += 1.0
     return block
-
-
-@numba.njit(cache=True, error_model="numpy")
-def forces_along(balance: Balance, points: Array, forces: ComplexArray, crossed: Array, counts: Array) -> None:
-    """Force harmonics (points, m, H + 1) of scaled points, and of each connection with hinges the crossings.
-
-    ``crossed`` (points, m, places, 3) takes (τ, hinge, rising), ``counts`` (points, m) how many there are.
-    """
-    n = points.shape[1] - 1
-    m, count = forces.shape[1:]
-    stiffness, rate = np.empty(n // m + 3, dtype=np.complex128), np.empty(n // m + 3, dtype=np.complex128)
-    jacobian = np.empty((count, 2 * count - 1), dtype=np.complex128)
-    for i in range(points.shape[0]):
-        p = points[i, n] * balance.scale[n]
-        speed = p if balance.by_speed == 1 else balance.fixed_speed
-        z = points[i, :n] * balance.scale[:n]
-        for e in range(m):
-            counts[i, e] = force_harmonics(
-                balance, e, z, speed, forces[i, e], jacobian, stiffness, rate, crossed[i, e]
-            )
 
 
 @numba.njit(cache=True, error_model="numpy")

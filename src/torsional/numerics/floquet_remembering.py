@@ -30,7 +30,9 @@ def _derivatives(address: int, law: Array, angles: Array, rates: Array, step: fl
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _march(matrix: Array, push: Array, angle: Array, reference: Array, told: Array, remembers: IntArray, step: float) -> Array:
+def _march(
+    matrix: Array, push: Array, angle: Array, reference: Array, told: Array, remembers: IntArray, step: float
+) -> Array:
     """Monodromy matrix of (state, memories); ``told`` (m, samples, 6); ``reference`` (m, 2) stiffness and damping."""
     n, m = matrix.shape[0], push.shape[1]
     wide = np.zeros((n + 2 * m, n + 2 * m))

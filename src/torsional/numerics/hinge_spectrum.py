@@ -17,6 +17,7 @@ import numpy as np
 from torsional.numerics.arrays import Array, ComplexArray
 
 TWO_PI = 2.0 * np.pi
+CLOSE = 1e-9
 
 
 def scan_table(harmonics: int, samples: int = 0) -> Array:
@@ -63,8 +64,8 @@ def _root(x: Array, gap: float, low: float, high: float, at_low: float, at_high:
         following = tau + step
         if not low <= following <= high:
             following = 0.5 * (low + high)
-        if abs(following - tau) <= 4e-16 * TWO_PI or value == 0.0:
-            return following if value != 0.0 else tau
+        if abs(following - tau) <= CLOSE:  # the next step would be of the order of its square
+            return following
         tau = following
     return tau
 
@@ -96,9 +97,6 @@ def _grazed(x: Array, gap: float, before: float, here: float, after: float, midd
 
     A parabola through them tells whether a closer look is worth it.
     """
-    toward = here > 0.0
-    if ((before < here) or (after < here)) if toward else ((before > here) or (after > here)):
-        return -1.0
     bend = before - 2.0 * here + after
     reach = 0.125 * (after - before) ** 2 / abs(bend) if bend != 0.0 else 0.0
     if abs(here) > 4.0 * reach + 0.25 * abs(bend):
@@ -107,7 +105,7 @@ def _grazed(x: Array, gap: float, before: float, here: float, after: float, midd
     if (motion(x, low)[1] > 0.0) == (motion(x, high)[1] > 0.0):
         return -1.0
     turn = _extremum(x, low, high)
-    return turn if (motion(x, turn)[0] - gap > 0.0) != toward else -1.0
+    return turn if (motion(x, turn)[0] - gap > 0.0) != (here > 0.0) else -1.0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -115,26 +113,25 @@ def crossings(x: Array, samples: Array, gap: float, places: Array, rising: Array
     """Angles in [0, 2π) at which the motion passes ``gap``, and whether it rises there; returns their number."""
     size, count = samples.size, 0
     width = TWO_PI / size
+    before, here = samples[size - 1] - gap, samples[0] - gap
     for i in range(size):
-        here, after = samples[i] - gap, samples[(i + 1) % size] - gap
-        tau = i * width
+        after = samples[i + 1 if i + 1 < size else 0] - gap
         if (here > 0.0) != (after > 0.0):
             if count < places.size:
-                places[count] = _root(x, gap, tau, tau + width, here, after)
+                places[count] = _root(x, gap, i * width, (i + 1) * width, here, after)
                 rising[count] = 1.0 if after > 0.0 else 0.0
                 count += 1
-            continue
-        before = samples[i - 1] - gap
-        if (before > 0.0) != (here > 0.0):
-            continue
-        turn = _grazed(x, gap, before, here, after, tau, width)
-        if turn >= tau - width and count + 1 < places.size:
-            beyond = motion(x, turn)[0] - gap
-            low, high = motion(x, tau - width)[0] - gap, motion(x, tau + width)[0] - gap
-            places[count] = _root(x, gap, tau - width, turn, low, beyond)
-            places[count + 1] = _root(x, gap, turn, tau + width, beyond, high)
-            rising[count], rising[count + 1] = (1.0, 0.0) if beyond > 0.0 else (0.0, 1.0)
-            count += 2
+        elif (before > 0.0) == (here > 0.0) and (here - before) * (after - here) <= 0.0:
+            toward = before >= here if here > 0.0 else before <= here
+            turn = _grazed(x, gap, before, here, after, i * width, width) if toward else -1.0
+            if turn > (i - 1) * width and turn != -1.0 and count + 1 < places.size:
+                beyond = motion(x, turn)[0] - gap
+                low, high = (i - 1) * width, (i + 1) * width
+                places[count] = _root(x, gap, low, turn, motion(x, low)[0] - gap, beyond)
+                places[count + 1] = _root(x, gap, turn, high, beyond, motion(x, high)[0] - gap)
+                rising[count], rising[count + 1] = (1.0, 0.0) if beyond > 0.0 else (0.0, 1.0)
+                count += 2
+        before, here = here, after
     return count
 
 

@@ -8,6 +8,8 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 
+LEAST = 1e-250
+
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def factor(a: Array, order: IntArray) -> float:
@@ -57,19 +59,25 @@ def backsolve(a: Array, order: IntArray, b: Array) -> None:
         b[k] /= a[k, k]
 
 
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
+def row_norms(a: Array, norms: Array) -> None:
+    """Euclidean norms of the rows of a matrix that is about to be factored."""
+    for i in range(a.shape[0]):
+        row, total = a[i], 0.0
+        for j in range(row.size):
+            total += row[j] * row[j]
+        norms[i] = np.sqrt(total)
+
+
 @numba.njit(cache=True, error_model="numpy")
-def scaled_determinant(a: Array, order: IntArray) -> float:
-    """Determinant over the product of the row norms: of order one, it passes through zero as the determinant does."""
-    n, norms = a.shape[0], 0.0
-    for i in range(n):
-        norms += np.log(np.sqrt((a[i] * a[i]).sum()))
-    sign = factor(a, order)
-    if sign == 0.0:
-        return 0.0
-    size = 0.0
-    for i in range(n):
-        size += np.log(abs(a[i, i]))
-    return float(sign * np.exp(size - norms))
+def scaled_determinant(a: Array, sign: float, norms: Array) -> float:
+    """Determinant of factors over the product of the row norms: of order one, it passes through zero as that does."""
+    value = sign
+    for i in range(a.shape[0]):
+        value *= abs(a[i, i]) / norms[i]
+        if abs(value) < LEAST:  # of many unknowns the sign alone is kept
+            value = sign * LEAST
+    return value
 
 
 @numba.njit(cache=True, error_model="numpy")

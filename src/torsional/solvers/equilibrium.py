@@ -77,7 +77,12 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
     [-0.01]
     """
     elastic = _without_friction(system)
-    loads = _balanced(elastic, torques, hold)
+    torque, angle = _settled(system, elastic, _balanced(elastic, torques, hold), hold)
+    return _point(system, np.broadcast_shapes(*(np.shape(value) for value in torques.values())), torque, angle)
+
+
+def _settled(system: System, elastic: System, loads: Array, hold: str) -> tuple[Array, Array]:
+    """Torques and angles (cases, connections) under balanced loads (cases, coordinates)."""
     carrying = _carrying(elastic)
     weights = system.connections.weights[carrying]
     shares, _, rank, _ = np.linalg.lstsq(weights.T, loads.T, rcond=None)
@@ -89,11 +94,18 @@ def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> 
         torque[:, carrying] = shares.T
         angle = np.array([_angles(elastic, i, torque[:, i]) for i in range(carrying.size)]).T
         _take_along(system, angle, carrying)
-    else:
-        found = [_newton(elastic, load) for load in loads]
-        angle = np.array([system.connections.weights @ q for q in found])
-        torque = np.array([_forces(elastic, a)[0] for a in angle])
-    return _point(system, np.broadcast_shapes(*(np.shape(value) for value in torques.values())), torque, angle)
+        return torque, angle
+    found = [_newton(elastic, load) for load in loads]
+    angle = np.array([system.connections.weights @ q for q in found])
+    return np.array([_forces(elastic, a)[0] for a in angle]), angle
+
+
+def settled(system: System, load: Array) -> Array:
+    """Angles [rad] of all connections in equilibrium under balanced torques (coordinates,) [Nm] on the coordinates.
+
+    Raises ModelError where no spring can carry them.
+    """
+    return _settled(system, _without_friction(system), load[None], "")[1][0]
 
 
 def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) -> OperatingPoint:

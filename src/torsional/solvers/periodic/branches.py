@@ -11,7 +11,7 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.continuation import End, Point, Settings, Trace, both_ways, followed
-from torsional.solvers.periodic.problem import JOINED, BoolArray, HarmonicProblem, Setting, WatchedProblem
+from torsional.solvers.periodic.problem import JOINED, HarmonicProblem, Setting, WatchedProblem
 from torsional.solvers.periodic.stability import branch_multipliers, with_hidden_events
 from torsional.solvers.periodic.start import first_solution
 
@@ -21,10 +21,10 @@ DEPARTED = "departed"
 NOT_BIFURCATIONS = ("", JOINED, DEPARTED)
 DEPARTURES = (0.02, 0.005, 0.001, 1e-4, 0.08)
 """First steps onto a branch that leaves another, in scaled angles, in the order in which they are tried."""
-NEAR = 1e-2
-"""Scaled distance from the branch that another leaves within which nothing more is looked for on that one."""
-ALIKE = 1e-6
-"""Scaled distance below which two points are the same."""
+NEAR = 1e-4
+"""Scaled distance from where two branches meet within which a bifurcation is that meeting."""
+ALIKE, NEAREST = 1e-5, 3
+"""Scaled distance below which two points are the same; how many chords of a branch are tried."""
 
 
 @dataclass(eq=False)
@@ -38,8 +38,6 @@ class Branch:
     ended: str
     parent: tuple[int, int] = (-1, -1)
     """Number of the branch it leaves, and of the event there."""
-    watched: BoolArray | None = None
-    """Unknowns that are zero where it leaves and joins other branches."""
 
     @property
     def base_order(self) -> float:
@@ -52,8 +50,9 @@ class Branch:
         return [point for point in self.points if point.event not in NOT_BIFURCATIONS and not self._leaving(point)]
 
     def _leaving(self, point: Point) -> bool:
-        """Whether a point is all but on the branch that this one leaves: what is found there belongs to that one."""
-        return self.watched is not None and float(np.linalg.norm(point.z[self.watched])) < NEAR
+        """Whether a point is where this branch meets the one it leaves: what is found there belongs to that one."""
+        joints = (joint.z for joint in self.points if joint.event in (JOINED, DEPARTED))
+        return any(float(np.abs(point.z - z).max()) < NEAR for z in joints)
 
     @cached_property
     def multipliers(self) -> ComplexArray:
@@ -85,10 +84,14 @@ class Explorer:
     lost: list[str] = field(default_factory=list)
     """Departures that could not be followed, in words."""
     make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
+    problems: dict[float, HarmonicProblem] = field(default_factory=dict)
+    """Problems by base order, each made once."""
 
     def problem(self, base_order: float) -> HarmonicProblem:
         """The problem in multiples of a base order."""
-        return self.make(self.setting, base_order)
+        if base_order not in self.problems:
+            self.problems[base_order] = self.make(self.setting, base_order)
+        return self.problems[base_order]
 
     def explored(self) -> list[Branch]:
         """All branches that hang together with the main one."""
@@ -108,18 +111,21 @@ class Explorer:
         """The main branch from the lower end of the span; from the upper end too where the first does not get there."""
         problem = self.problem(self.base_order)
         low, high = self.span
+        failed: list[ModelError] = []
         for value, direction in ((low, 1), (high, -1)):
+            if self.branches and high in self.branches[0].values[[0, -1]]:
+                break
             try:
                 start = first_solution(problem, value)
             except ModelError as error:
-                if not self.branches:
-                    raise
-                self.lost.append(str(error))
+                failed.append(error)
                 continue
-            if self.known(problem, start):
-                continue
-            trace = followed(problem, start, direction, self.span, self.settings)
-            self._add(MAIN, problem, trace, "started at an end of the range")
+            if not self.known(problem, start):
+                trace = followed(problem, start, direction, self.span, self.settings)
+                self._add(MAIN, problem, trace, "started at an end of the range")
+        if not self.branches:
+            raise failed[0]
+        self.lost += [str(error) for error in failed]
 
     def isolated(self, problem: HarmonicProblem, start: Array) -> bool:
         """Add the branch through a scaled solution that lies on none of those known; whether it was a new one."""
@@ -212,7 +218,7 @@ class Explorer:
         leaving = Point(start, heading, found.values, event.parameter, -step, 0, event.residual, DEPARTED)
         trace = replace(trace, points=(leaving, *trace.points))
         told = f"left branch {origin[0]} at a {'period doubling' if kind == DOUBLED else 'branch point'}"
-        self._add(kind, problem, trace, told, origin, watched.watched if watched else None)
+        self._add(kind, problem, trace, told, origin)
 
     def _add(
         self,
@@ -221,31 +227,36 @@ class Explorer:
         trace: Trace,
         started: str,
         parent: tuple[int, int] = (-1, -1),
-        watched: BoolArray | None = None,
     ) -> None:
         ended = "joined the branch it left, or its copy" if trace.end is End.TERMINAL else trace.end.advice
         if not trace.points:
             return
-        branch = Branch(kind, problem, trace.points, started, ended, parent, watched)
+        branch = Branch(kind, problem, trace.points, started, ended, parent)
         if self.stability:
             branch = replace(branch, points=with_hidden_events(problem, trace.points, branch.multipliers))
         self.branches.append(branch)
 
 
 def _passes(branch: Branch, problem: HarmonicProblem, z: Array) -> bool:
-    """Whether a branch passes through a scaled point, up to a shift of the time by periods of the excitation."""
-    if branch.base_order != problem.base_order:
+    """Whether a branch passes through a scaled point, up to a shift of the time by periods of the excitation.
+
+    The chord nearest to the point is corrected in the plane across it that the point lies in: the same point is found
+    again if the branch passes there.
+    """
+    if branch.base_order != problem.base_order or len(branch.points) < 2:
         return False
-    value = z[-1]
+    scaled = branch.scaled
+    start, chord = scaled[:-1], np.diff(scaled, axis=0)
+    length = np.maximum((chord**2).sum(axis=1), 1e-300)
     for copy in copies(problem, z):
-        for start, end in _around(branch, value):
-            share = (value - start.z[-1]) / (end.z[-1] - start.z[-1])
-            guess = start.z + share * (end.z - start.z)
-            reach = 0.5 * float(np.abs(end.z - start.z).max()) + ALIKE
-            if np.abs(guess - copy).max() > reach:
+        share = np.clip(((copy - start) * chord).sum(axis=1) / length, 0.0, 1.0)[:, None]
+        guess = start + share * chord
+        distance = np.linalg.norm(guess - copy, axis=1)
+        for i in np.argsort(distance)[:NEAREST]:
+            if distance[i] > np.sqrt(length[i]) + ALIKE:
                 continue
-            found = problem.at(guess, float(value * problem.scale[-1]))
-            if found.converged and np.abs(found.z - copy).max() <= 1e3 * ALIKE:
+            found = problem.correct(guess[i], chord[i] / np.sqrt(length[i]))
+            if found.converged and np.abs(found.z - copy).max() <= ALIKE:
                 return True
     return False
 
@@ -258,9 +269,3 @@ def copies(problem: HarmonicProblem, z: Array) -> Iterator[Array]:
     for shift in range(1, times):
         turns = np.exp(2j * np.pi * shift * np.arange(harmonics.shape[1]) / times)
         yield problem.point_of(harmonics * turns, float(z[-1] * problem.scale[-1]))
-
-
-def _around(branch: Branch, value: float) -> Iterator[tuple[Point, Point]]:
-    for start, end in zip(branch.points[:-1], branch.points[1:], strict=True):
-        if (start.z[-1] - value) * (end.z[-1] - value) <= 0 and start.z[-1] != end.z[-1]:
-            yield start, end

@@ -39,13 +39,17 @@ class Split:
         if not 1 <= count <= MOST_CONNECTIONS:
             allowed = f"1 to {MOST_CONNECTIONS}"
             raise ModelError(
-                "the system has no connection with a law that bends" if not count else "too many connections have a law",
+                "the system has no connection with a law that bends"
+                if not count
+                else "too many connections have a law",
                 found=f"{count} of them",
                 allowed=allowed,
                 remedy="a linear system is a matter for harmonic_response" if not count else "replace some by springs",
             )
         if self.kin is not None:
-            self.__dict__.update({name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")})
+            self.__dict__.update(
+                {name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")}
+            )
             if self.system.shares_linear_part(self.kin.system):
                 self.__dict__.update({name: getattr(self.kin, name) for name in ("matrices", "poles", "rigid")})
 
@@ -176,15 +180,19 @@ def balance(
     torque = np.stack([load.order(n) for n in orders], axis=2)
     poles = split.poles
     modal: ComplexArray = torque @ (onto @ poles.shapes.T) if poles else np.zeros((1, 4, 1, 0), complex)
+    values: ComplexArray = poles.poles if poles else np.zeros(0, complex)
+    left: ComplexArray = split.weights @ poles.shapes.T if poles else np.zeros((len(split.laws), 0), complex)
+    pairs = (left[:, None] * left).reshape(-1, values.size)
     law_values, law_start, address, remembers = packed(split.laws)
     return Balance(
         base_order=float(base_order),
         fixed_speed=float(speed or 0.0),
         by_speed=int(speed is None),
         breaks=np.ascontiguousarray(load.breaks, dtype=float),
-        poles=np.ascontiguousarray(poles.poles) if poles else np.zeros(0, complex),
-        left=np.ascontiguousarray(poles.shapes @ split.weights.T) if poles else np.zeros((0, 0), complex),
-        modal_load=np.ascontiguousarray(modal),
+        poles=np.stack([-values.real, values.imag]),
+        left=np.stack([left.real, left.imag]),
+        pairs=np.stack([pairs.real, pairs.imag]),
+        modal_load=np.stack([modal.real, modal.imag]),
         matrices=np.ascontiguousarray(split.matrices),
         weights=np.ascontiguousarray(split.weights),
         node_load=np.ascontiguousarray(torque @ onto),

@@ -58,7 +58,9 @@ class Load:
     def over_amplitude(cls, excitation: Excitation) -> Load:
         """One operating point with every order above 0 times the parameter."""
         mean, varied = _split(excitation)
-        return cls.polynomial(excitation.nodes, excitation.orders, np.array([0.0, 1.0]), np.stack([mean, mean + varied]))
+        return cls.polynomial(
+            excitation.nodes, excitation.orders, np.array([0.0, 1.0]), np.stack([mean, mean + varied])
+        )
 
     @classmethod
     def over_mean_torque(cls, excitation: Excitation) -> Load:
@@ -87,12 +89,37 @@ class Load:
 
     @property
     def base_order(self) -> float:
-        """The largest order of which all that count are multiples, in steps of a quarter order."""
-        size = np.abs(self.coefficients[:, 0]).max(axis=(0, 1))
+        """The largest order of which all that count are multiples."""
+        size = np.max([np.abs(self.at(float(value))).max(axis=0) for value in self.breaks], axis=0)
         counts = (self.orders > 0) & (size > NEGLIGIBLE * size[self.orders > 0].max(initial=0.0))
         if not counts.any():
             raise ModelError("nothing but a mean torque acts", where="excitation", remedy="give orders above 0")
-        return float(np.gcd.reduce(np.round(self.orders[counts] * 4).astype(int))) / 4
+        base = 0.0
+        for order in self.orders[counts]:
+            base = _common(base, float(order))
+        return base
+
+    def refuse_others(self, base_order: float) -> None:
+        """Raise ModelError where an order that counts is no multiple of a base order."""
+        ratio = self.orders / base_order
+        lost = self.orders[np.abs(ratio - np.round(ratio)) > 1e-6]
+        if lost.size:
+            raise ModelError(
+                "the excitation has an order that is no multiple of the base order",
+                where="base_order",
+                found=f"order {lost[0]:g}",
+                allowed=f"multiples of {base_order:g}",
+                remedy="leave the base order out, or choose one that divides all orders",
+            )
+
+
+def _common(a: float, b: float) -> float:
+    """The largest number of which both are whole multiples, by Euclid's algorithm."""
+    while b > 1e-6:
+        a, b = b, a % b
+        if a - b < 1e-6:
+            b = 0.0
+    return round(a, 9)
 
 
 def _split(excitation: Excitation) -> tuple[ComplexArray, ComplexArray]:

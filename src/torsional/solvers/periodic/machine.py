@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from torsional.solvers.operating import torque_places
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem
 from torsional.solvers.periodic.response import HIGHEST_ORDER, Variation, periodic_response
-from torsional.system import assemble
+from torsional.system import System, assemble
 
 Range = tuple[float, float]
 
@@ -30,12 +30,10 @@ SPEEDS, TORQUES = 9, 65
 
 def model_response(
     model: Model,
-    speed: float | Range | None = None,
-    torque: float | Range | None = None,
+    speed: Range | None = None,
+    torque: float | None = None,
     gear: str | int | None = None,
     *,
-    parameter: Variation | None = None,
-    span: Range | None = None,
     at: ArrayLike = (),
     highest_order: float = HIGHEST_ORDER,
     base_order: float | None = None,
@@ -45,22 +43,19 @@ def model_response(
     """`periodic_response` of a ``model`` in one ``gear`` over a range of ``speed`` [rad/s] at one mean engine
     ``torque`` [Nm], or at full load where that is None.
 
-    Where the torque is a range and the speed a single one, branches are followed over the mean torque; with a
-    ``parameter`` both are single, and it is followed over its ``span``.  ``at``: values at which branches get points.
+    ``at``: speeds at which every branch that passes them gets a point.
     Of the engine's orders those are taken that its cylinders have in common (every third of an evenly fired six), since
     on a stiff crankshaft the others cancel; with ``base_order`` 0.5 all are, and what was a bifurcation to twice the
     period is then rounded off by the small excitation at its own order.
     Raises ModelError for a model without engine, without laws, or that does not say where torque enters and leaves.
     """
-    case = _case(model, speed, torque, parameter, span)
-    load = case.load(model, highest_order, base_order)
+    low, high = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
+    load = engine_load(model, (low, high), torque, highest_order, base_order)
     data = periodic_response(
         assemble(model.powertrain(gear or None)),
         load,
-        case.span,
-        parameter=case.parameter,
+        (low, high),
         hold=model.landmarks.load,
-        speed=case.speed,
         highest_order=highest_order,
         base_order=base_order or load.base_order,
         depth=depth,
@@ -68,48 +63,6 @@ def model_response(
         at=at,
     )
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
-
-
-@dataclass(frozen=True)
-class _Case:
-    """What is followed over which span, and what is given once: ``speed`` [rad/s] and ``torque`` [Nm]."""
-
-    parameter: str | Variation
-    span: Range
-    speed: float | None = None
-    torque: float | None = None
-
-    def load(self, model: Model, highest_order: float, base_order: float | None) -> Load:
-        """The engine's load along the parameter."""
-        if self.parameter == "speed":
-            return engine_load(model, self.span, self.torque, highest_order, base_order)
-        assert self.speed is not None
-        span = self.span if self.parameter == "mean_torque" else (self.torque or 0.0,)
-        return engine_torque_load(model, self.speed, span, highest_order, base_order)
-
-
-def _case(
-    model: Model,
-    speed: float | Range | None,
-    torque: float | Range | None,
-    parameter: Variation | None,
-    span: Range | None,
-) -> _Case:
-    """The case asked for; ModelError unless one thing varies."""
-    if isinstance(torque, tuple) or parameter is not None:
-        if speed is None or isinstance(speed, tuple):
-            raise ModelError("one speed is wanted where something else varies", where="speed", found=str(speed))
-        if isinstance(torque, tuple):
-            if parameter is not None:
-                raise ModelError("one torque is wanted where something else varies", where="torque", found=str(torque))
-            return _Case("mean_torque", torque, float(speed))
-        if span is None or torque is None or parameter is None:
-            remedy = "give span=(from, to) and one torque"
-            raise ModelError("the parameter has no span, or the torque is missing", where="span", remedy=remedy)
-        return _Case(parameter, span, float(speed), float(torque))
-    if speed is not None and not isinstance(speed, tuple):
-        raise ModelError("nothing varies", where="speed", found=str(speed), remedy="give speed=(from, to)")
-    return _Case("speed", speed or model.operation.speed, None, torque)
 
 
 def varied_response(
@@ -125,11 +78,12 @@ def varied_response(
     depth: int = 2,
     stability: bool = True,
     isolated: bool = False,
+    at: ArrayLike = (),
 ) -> xr.Dataset:
     """`periodic_response` of a ``model`` over a value of its file, or over the mean torque, at one ``speed`` [rad/s].
 
     ``path`` names the value, as in ``absorber.stages.1.stiffness``, and ``span`` its range in SI units; "torque" stands
-    for the mean engine torque [Nm].  Raises ModelError as `model_response` does, and for a path the model does not have.
+    for the mean engine torque [Nm]; ``at``: values at which every branch that passes them gets a point.  Raises ModelError as `model_response` does, and for a path the model does not have.
     """
     settings = {"highest_order": highest_order, "depth": depth, "stability": stability, "isolated": isolated}
     system, hold = assemble(model.powertrain(gear or None)), model.landmarks.load
@@ -146,7 +100,7 @@ def varied_response(
         parameter = Variation(path, "", build)
     base = base_order or load.base_order
     data = periodic_response(
-        system, load, span, parameter=parameter, hold=hold, speed=speed, base_order=base, **settings
+        system, load, span, parameter=parameter, hold=hold, speed=speed, base_order=base, at=at, **settings
     )  # type: ignore[arg-type]
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
 
@@ -189,13 +143,13 @@ def engine_load(
 def engine_torque_load(
     model: Model,
     speed: float,
-    torque: Range | tuple[float],
+    torque: Range,
     highest_order: float = HIGHEST_ORDER,
     base_order: float | None = None,
 ) -> Load:
-    """The engine's load over mean torque [Nm] at one speed [rad/s]; of a single torque it holds whatever varies."""
+    """The engine's load over mean torque [Nm] at one speed [rad/s]."""
     engine = checked_engine(model)
-    torques = np.linspace(*torque, TORQUES) if len(torque) == 2 else np.array(torque)
+    torques = np.linspace(*torque, TORQUES)
     base = base_order or common_order(model, speed, float(torques.mean()))
     orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
     found = engine.excitation(model.landmarks.throws, speed, torques, orders)

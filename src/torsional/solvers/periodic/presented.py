@@ -133,4 +133,3 @@ def _bifurcations(
         "bifurcation_value": (dim, value, ""),
         "on_branch": (dim, np.array([number for number, _ in rows], dtype=int), ""),
     }
-

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import copy
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.balance import corrected, equations, half_order_block
-from torsional.numerics.balance_data import Balance, harmonic_part, static_part
+from torsional.numerics.balance_data import Balance, harmonic_parts, static_part
 from torsional.numerics.continuation import Corrected
 from torsional.solvers.periodic.equations import Split, balance
 from torsional.solvers.periodic.load import Load
 
 BoolArray = NDArray[np.bool_]
 JOINED = "joined"
+MET = 40
 TESTS = ("branch point", "period doubling")
 
 
@@ -43,17 +47,20 @@ class Setting:
         """How many multiples of a base order there are up to the highest one."""
         return max(int(self.highest_order / base_order + 1e-9), 1)
 
+    def scale(self, base_order: float) -> Array:
+        """What the scaled unknowns and the scaled parameter are multiplied with (n + 1,)."""
+        return np.append(np.tile(self.angle_scale, 2 * self.harmonics(base_order) + 1), self.parameter_scale)
+
     def balance(self, base_order: float) -> Balance:
         """The compiled balance in multiples of a base order."""
         count = self.harmonics(base_order)
-        scale = np.append(np.tile(self.angle_scale, 2 * count + 1), self.parameter_scale)
         half = min((self.harmonics(0.5 * base_order) + 1) // 2, count + 1)
         return balance(
             self.split,
             self.load,
             base_order,
             count,
-            scale,
+            self.scale(base_order),
             hold=self.hold,
             speed=self.speed,
             half_orders=half,
@@ -70,6 +77,13 @@ class HarmonicProblem:
         self.scale = self.balance.scale
         remembers = bool(self.balance.remembers.any())
         self.tests: tuple[str, ...] = TESTS[: 1 if remembers else 2]
+
+    def rescaled(self, setting: Setting) -> Self:
+        """The same problem in a setting with other scales."""
+        scaled = copy.copy(self)
+        scaled.setting, scaled.scale = setting, setting.scale(self.base_order)
+        scaled.balance = self.balance._replace(scale=scaled.scale)
+        return scaled
 
     def frozen(self, value: float) -> HarmonicProblem:
         """The problem in which everything but speed and load is as it is at one physical value of the parameter."""
@@ -133,8 +147,7 @@ class HarmonicProblem:
         g, dg = np.zeros((*shape, m), dtype=complex), np.zeros((*shape, m), dtype=complex)
         static_part(balance, value, b, db)
         speed = value if self.setting.speed is None else self.setting.speed
-        for h in range(1, self.harmonics + 1):
-            harmonic_part(balance, h, value, speed, g, dg, b, db)
+        harmonic_parts(balance, value, speed, g, dg, b, db)
         return b[0].real, np.abs(b[1:]).max(axis=0)
 
     def harmonics_of(self, z: Array) -> ComplexArray:
@@ -167,7 +180,7 @@ class WatchedProblem:
     def __init__(self, inner: HarmonicProblem, watched: BoolArray) -> None:
         self.inner, self.watched, self.scale = inner, watched, inner.scale
         self.tests = (*inner.tests, JOINED)
-        self.facing: Array | None = None
+        self._met: deque[tuple[Array, Array]] = deque(maxlen=MET)
 
     @classmethod
     def of_odd(cls, inner: HarmonicProblem) -> WatchedProblem:
@@ -177,13 +190,22 @@ class WatchedProblem:
         return cls(inner, np.concatenate([np.zeros(m, bool), np.repeat(odd, 2 * m), [False]]))
 
     def correct(self, guess: Array, normal: Array) -> Corrected:
-        """Newton's method; the last test is the watched amplitude, with the sign of its turn against the last one."""
+        """Newton's method; the last test is the watched amplitude, negative beyond the place where it was zero."""
         found = self.inner.correct(guess, normal)
         if not found.converged:
             return found._replace(values=np.append(found.values, 0.0))
         part = found.z[self.watched]
-        size = float(np.sqrt(part @ part))
-        along = 1.0 if self.facing is None else float(self.facing @ part)
-        if along > 0:
-            self.facing = part
-        return found._replace(values=np.append(found.values, np.copysign(size, along)))
+        facing = self._facing(guess, normal)
+        side = 1.0 if facing is None or float(facing @ part) >= 0 else -1.0
+        self._met.append((found.z, side * part))
+        return found._replace(values=np.append(found.values, side * float(np.sqrt(part @ part))))
+
+    def _facing(self, guess: Array, normal: Array) -> Array | None:
+        """The watched part, before any crossing of zero, of the nearest point met that lies behind a guess."""
+        best, least = None, np.inf
+        for z, part in self._met:
+            way = guess - z
+            distance = float(way @ way)
+            if distance < least and float(way @ normal) >= -1e-9:
+                best, least = part, distance
+        return best

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -138,6 +138,7 @@ def explored(
         raise ModelError("the speed is missing", where="speed", remedy="all parameters but the speed need one")
     load = _load(excitation, parameter, low)
     order = base_order or load.base_order
+    load.refuse_others(order)
     make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
     if isinstance(parameter, Variation):
         system, make = parameter.build(low), partial(VariedProblem, build=parameter.build)
@@ -149,8 +150,10 @@ def explored(
     setting = Setting(split, load, hold, fixed, highest_order, np.ones(len(split.laws)), unit)
     if setting.harmonics(order) * order < order or order > highest_order:
         raise ModelError("the highest order is below the base order", where="highest_order", found=f"{highest_order:g}")
-    setting = _scaled(setting, order, (low, high))
-    return Explorer(setting, order, (low, high), settings, depth, stability, make=make)
+    unscaled = make(setting, order)
+    setting = replace(setting, angle_scale=_angle_scale(unscaled, (low, high)))
+    known = {order: unscaled.rescaled(setting)}
+    return Explorer(setting, order, (low, high), settings, depth, stability, make=make, problems=known)
 
 
 def _load(excitation: Excitation | Load, parameter: str | Variation, value: float) -> Load:
@@ -184,18 +187,12 @@ def _refuse_switch(system: System, low: float, high: float, speed: float | None)
             )
 
 
-def _scaled(setting: Setting, order: float, span: tuple[float, float]) -> Setting:
-    """The setting with angles scaled by what is to be expected: static twist, linear response, the nearest hinge."""
-    from dataclasses import replace
-
-    problem = HarmonicProblem(setting, order)
-    sizes = [np.zeros(problem.connections)]
-    for value in span:
-        static, linear = problem.linear_size(value)
-        sizes += [np.abs(static), np.abs(linear)]
-    sizes.append(np.array([_nearest_hinge(law) for law in setting.split.laws]))
+def _angle_scale(problem: HarmonicProblem, span: tuple[float, float]) -> Array:
+    """Sizes of the angles (m,) to be expected: static twist, linear response, the nearest hinge."""
+    sizes = [np.abs(part) for value in span for part in problem.linear_size(value)]
+    sizes.append(np.array([_nearest_hinge(law) for law in problem.setting.split.laws]))
     size = np.max(sizes, axis=0)
-    return replace(setting, angle_scale=np.where(size > 0, size, size.max(initial=0.0) or 1.0))
+    return np.where(size > 0, size, size.max(initial=0.0) or 1.0)
 
 
 def _nearest_hinge(law: object) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
-from torsional.numerics.balance import forces_along
+from torsional.numerics.balance_forces import forces_along
 from torsional.numerics.continuation import Point
 from torsional.numerics.floquet import multipliers, ordered
 from torsional.numerics.floquet_remembering import monodromy_remembering
@@ -102,9 +102,7 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     return monodromy_sampled(_linear(split), stiffness, damping, 2 * np.pi / pace).matrix
 
 
-def with_hidden_events(
-    problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray
-) -> tuple[Point, ...]:
+def with_hidden_events(problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray) -> tuple[Point, ...]:
     """The points with those bifurcations between them that only the multipliers show.
 
     A complex pair that leaves the unit circle is a Neimark–Sacker bifurcation; a real multiplier that passes −1 where

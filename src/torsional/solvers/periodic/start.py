@@ -13,11 +13,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from torsional.errors import ModelError
+from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings, followed
-from torsional.solvers.equilibrium import equilibrium
+from torsional.solvers.equilibrium import equilibrium, settled
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
+from torsional.solvers.periodic.varied import VariedProblem
+from torsional.system import System
 
 HOMOTOPY = Settings(first_step=0.05, largest_step=0.3, most_points=400)
 
@@ -27,34 +30,34 @@ def first_solution(problem: HarmonicProblem, value: float) -> Array:
 
     Raises ModelError with the last good point and what to try where no way leads to one.
     """
-    ways: tuple[Callable[[HarmonicProblem, float], Iterator[Array]], ...] = (_linear, _raised, _lighter)
-    reached = ""
+    ways: tuple[Callable[[HarmonicProblem, float], Iterator[Array]], ...] = (_linear, _raised, _bent, _lighter, _shaken)
     for way in ways:
         for guess in way(problem, value):
             found = problem.at(guess, value)
             if found.converged:
                 return found.z
-            reached = f"{way.__name__.strip('_')} start"
+    static = ", ".join(f"{angle:.4g} rad" for angle in static_angles(problem.frozen(value).setting, value))
     raise ModelError(
         "no periodic solution was found to start from",
         where=f"parameter {value:g}",
-        found=f"the last try was a {reached or 'static state'}",
-        remedy="start from the other end of the range, or at a higher mean torque or speed, or give more damping",
+        found=f"the last good point is the static state, mean angles {static}",
+        remedy="start at another end of the range, at a higher mean torque or speed, or give more damping",
     )
 
 
 def static_angles(setting: Setting, value: float) -> Array:
     """Mean relative angles (m,) [rad] under the mean torque alone, or under straight springs where none is found."""
     mean = setting.load.at(value)[:, setting.load.orders == 0].real.sum(axis=1)
-    names = setting.split.names
-    if setting.hold and mean.any():
-        try:
-            point = equilibrium(setting.split.system, dict(zip(setting.load.nodes, mean, strict=True)), setting.hold)
-            return np.array([point.angle[point.names.index(name)] for name in names])
-        except ModelError:
-            pass
-    onto = setting.split.system.T[[setting.split.system.node_index(node) for node in setting.load.nodes]]
-    return np.asarray(setting.split.twist(setting.split.balanced(onto, setting.hold)) @ mean)
+    split = setting.split
+    onto = split.system.T[[split.system.node_index(node) for node in setting.load.nodes]]
+    try:
+        if setting.hold and mean.any():
+            point = equilibrium(split.system, dict(zip(setting.load.nodes, mean, strict=True)), setting.hold)
+            return np.asarray(point.angle[list(split.places)])
+        return settled(split.system, mean @ onto)[list(split.places)]
+    except ModelError:
+        balanced = split.balanced(onto, setting.hold) if mean.any() else onto
+        return np.asarray(split.twist(balanced) @ mean)
 
 
 def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
@@ -65,6 +68,58 @@ def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
         at = np.zeros((static.size, 1), dtype=complex)
         at[:, 0] = static + shift * setting.angle_scale
         yield problem.point_of(at, value)
+
+
+def _shaken(problem: HarmonicProblem, value: float) -> Iterator[Array]:
+    """Vibrations of the first harmonic about several means, large enough to pass a free range from end to end."""
+    setting = problem.frozen(value).setting
+    static = static_angles(setting, value)
+    widths = np.array([_width(law) for law in setting.split.laws])
+    for size in (1.2, 2.0, 4.0):
+        for phase in np.exp(1j * np.pi * np.arange(4) / 2):
+            for shift in (0.0, 0.5, -0.5):
+                at = np.zeros((static.size, 2), dtype=complex)
+                at[:, 0] = static + shift * widths
+                at[:, 1] = size * np.maximum(widths, setting.angle_scale) * phase
+                yield problem.point_of(at, value)
+
+
+def _width(law: Law) -> float:
+    """Half the width of what lies between the hinges nearest to rest [rad]."""
+    gaps = np.abs(np.asarray(law.gaps)) if isinstance(law, Hinges) else np.zeros(0)
+    return float(gaps[gaps > 0].min(initial=np.inf)) if (gaps > 0).any() else 0.0
+
+
+def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
+    """The end of a continuation in the law: from straight springs of the reference stiffness to what it is."""
+    setting = problem.frozen(value).setting
+    split, torque = setting.split, setting.load.at(value)
+    if not all(isinstance(law, Hinges) for law in split.laws):
+        return
+    speed = value if setting.speed is None else setting.speed
+    load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0]), torque[None])
+
+    def build(share: float) -> System:
+        share = min(max(share, 0.0), 1.0)
+        laws = list(split.system.connections.laws)
+        for place, law, straight in zip(split.places, split.laws, split.reference_stiffness, strict=True):
+            assert isinstance(law, Hinges)
+            changes = tuple(share * change for change in law.changes)
+            base = straight + share * (law.stiffness - straight)
+            laws[place] = dataclasses.replace(law, stiffness=base, changes=changes)
+        return dataclasses.replace(
+            split.system, connections=dataclasses.replace(split.system.connections, laws=tuple(laws))
+        )
+
+    bent = VariedProblem(
+        dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order, build
+    )
+    mean, linear = bent.linear_size(0.0)
+    at = np.zeros((mean.size, 2), dtype=complex)
+    at[:, 0], at[:, 1] = mean, linear
+    trace = followed(bent, bent.point_of(at, 0.0), 1, (0.0, 1.0), HOMOTOPY)
+    if trace.points and trace.parameter[-1] == 1.0:
+        yield _moved(trace.points[-1].z, problem, value)
 
 
 def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:

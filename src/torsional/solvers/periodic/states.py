@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance import forces_along
+from torsional.numerics.balance_forces import forces_along
 from torsional.numerics.elimination import EliminationPlan
 from torsional.solvers.harmonic import element_torques, node_angles
 from torsional.solvers.periodic.problem import HarmonicProblem
@@ -36,7 +36,12 @@ def law_forces(problem: HarmonicProblem, points: Array) -> ComplexArray:
 def states(problem: HarmonicProblem, points: Array) -> States:
     """Everything that moves at scaled points (points, n + 1), from the linear part with the laws' torques as loads."""
     found = [_states(piece, points[run]) for run, piece in problem.pieces(points)]
-    return States(*(np.concatenate(parts) for parts in zip(*((s.angle, s.twist, s.torque, s.coordinates) for s in found), strict=True)))
+    return States(
+        *(
+            np.concatenate(parts)
+            for parts in zip(*((s.angle, s.twist, s.torque, s.coordinates) for s in found), strict=True)
+        )
+    )
 
 
 def _states(problem: HarmonicProblem, points: Array) -> States:

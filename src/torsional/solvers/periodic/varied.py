@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS, tested
+from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS, doubling_test
 from torsional.numerics.continuation import Corrected
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
@@ -73,6 +73,8 @@ class VariedProblem(HarmonicProblem):
             if change <= ENOUGH:
                 tangent = both[:, 1] / np.linalg.norm(both[:, 1])
                 frozen = self.frozen(float(z[-1] * self.scale[-1]))
-                tested(frozen.balance, z, tangent, jacobian, slope, spectra, values)
+                values[0] = np.linalg.det(rows / np.linalg.norm(rows, axis=1)[:, None]) / (normal @ tangent)
+                if values.size > 1:
+                    values[1] = doubling_test(frozen.balance, float(z[-1] * self.scale[-1]), spectra)
                 return Corrected(z, tangent, iteration, size, True, values)
         return Corrected(z, tangent, MOST_ITERATIONS, size, False, values)
