@@ -182,7 +182,7 @@ def balance(
     modal: ComplexArray = torque @ (onto @ poles.shapes.T) if poles else np.zeros((1, 4, 1, 0), complex)
     values: ComplexArray = poles.poles if poles else np.zeros(0, complex)
     left: ComplexArray = split.weights @ poles.shapes.T if poles else np.zeros((len(split.laws), 0), complex)
-    pairs = (left[:, None] * left).reshape(-1, values.size)
+    pairs = (left[:, None] * left).reshape(len(left) ** 2, values.size)
     law_values, law_start, address, remembers = packed(split.laws)
     return Balance(
         base_order=float(base_order),
