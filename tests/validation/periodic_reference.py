@@ -45,6 +45,15 @@ class Stages:
         steps = sum((self.slopes[i] - self.slopes[i + 1]) * self.edges[i] for i in range(low, high))
         return self.slopes[stage] * x + (steps if stage > first else -steps)
 
+    def along(self, x: np.ndarray) -> np.ndarray:
+        """Torques of many angles."""
+        at = np.searchsorted(self.edges, x)
+        return np.choose(at, [self.torque(x, stage) for stage in range(len(self.slopes))])
+
+    def slopes_along(self, x: np.ndarray) -> np.ndarray:
+        """Slopes at many angles."""
+        return np.asarray(self.slopes)[np.searchsorted(self.edges, x)]
+
 
 @dataclass(frozen=True)
 class Cubic:
@@ -63,6 +72,14 @@ class Cubic:
 
     def torque(self, x: float, stage: int) -> float:
         return self.gamma * x**3
+
+    def along(self, x: np.ndarray) -> np.ndarray:
+        """Torques of many angles."""
+        return self.gamma * x**3
+
+    def slopes_along(self, x: np.ndarray) -> np.ndarray:
+        """Slopes at many angles."""
+        return 3 * self.gamma * x**2
 
 
 @dataclass(frozen=True)
