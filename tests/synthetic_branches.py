@@ -103,5 +103,6 @@ def region() -> xr.Dataset:
         analysis="sub-harmonic map",
         order=1.5,
         element="dmf",
+        node="input",
         model="in closed form",
     )

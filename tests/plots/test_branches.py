@@ -75,16 +75,16 @@ def test_bifurcations_are_marked_on_their_branches(result: xr.Dataset) -> None:
 def test_what_is_measured_is_told(result: xr.Dataset) -> None:
     figure = plots.plot_branches(result, [1.5, "mean", "swing"], element="dmf")
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["order 1.5: torque [Nm], 0-peak", "mean torque [Nm]", "torque [Nm],\nhalf peak-to-peak"]
+    assert labels == ["order 1.5, 0-peak\ntorque [Nm]", "mean\ntorque [Nm]", "half peak-to-peak\ntorque [Nm]"]
     assert [axes.get_xlabel() for axes in figure.axes] == ["", "", "engine speed [rpm]"]
     assert xy(drawn(figure.axes[1], "stable"))[:, 1] == pytest.approx(MEAN)
     first = drawn(figure.axes[2], "stable")[0]
     assert np.asarray(first.get_ydata())[0] == pytest.approx(400.0, rel=1e-3)
     node = plots.plot_branches(result, [3.0], node="input").axes[0]
-    assert node.get_ylabel() == "order 3: acceleration [rad/s²], 0-peak"
+    assert node.get_ylabel() == "order 3, 0-peak\nacceleration [rad/s²]"
     assert np.asarray(drawn(node, "stable")[0].get_ydata())[0] == pytest.approx(150.0**2 * 200e-5)
     twist = plots.plot_branches(result, [3.0], element="dmf", quantity="twist").axes[0]
-    assert twist.get_ylabel() == "order 3: twist [deg], 0-peak"
+    assert twist.get_ylabel() == "order 3, 0-peak\ntwist [deg]"
     assert np.asarray(drawn(twist, "stable")[0].get_ydata())[0] == pytest.approx(np.degrees(0.04))
 
 

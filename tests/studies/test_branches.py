@@ -16,6 +16,7 @@ from torsional.studies.branches import (
     stable_ranges,
     stage_parts,
     stage_shares,
+    without_stable,
 )
 
 
@@ -36,8 +37,10 @@ def test_pieces_cover_every_step_once(result: xr.Dataset) -> None:
         (2, True),
     ]
     steps = sum(len(p.points) - 1 for p in found)
-    assert steps == result.sizes["point"] - 3
+    assert steps == result.sizes["point"] - 3 + 1  # of three branches, one of which begins on another
     assert all(result.stable.values[p.points].all() for p in found if p.stable)
+    assert result.branch.values[found[3].points][:2].tolist() == [0, 1]
+    assert result.value.values[found[3].points[0]] == 90.0
 
 
 def test_stable_ranges_end_at_bifurcations(result: xr.Dataset) -> None:
@@ -54,6 +57,14 @@ def test_coexisting_motions(result: xr.Dataset) -> None:
     spans = [(low, 130 - FOLD), (130 - FOLD, 130 + FOLD), (130 + FOLD, high)]
     assert np.array([span for span, _ in found]) == pytest.approx(np.array(spans))
     assert [here for _, here in found] == [[0, 2], [0, 2, 2], [0, 2]]
+
+
+def test_where_nothing_is_stable(result: xr.Dataset) -> None:
+    assert without_stable(result) == []
+    main = result.isel(point=result.branch.values == 0, bifurcation=result.on_branch.values == 0)
+    assert np.array(without_stable(main)) == pytest.approx(np.array([(90.0, 110.0)]))
+    middle = main.isel(point=(main.value.values > 91) & (main.value.values < 109), bifurcation=[])
+    assert np.array(without_stable(middle)) == pytest.approx(np.array([(92.0, 108.0)]))
 
 
 def test_motions_at_a_speed(result: xr.Dataset) -> None:

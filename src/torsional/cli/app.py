@@ -176,6 +176,62 @@ def campbell(
 
 
 @app.command()
+def periodic(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    torque: o.TorqueOrRange = "",
+    speed: o.SpeedOrRange = "",
+    parameter: o.Parameter = "",
+    at: o.At = "",
+    isolated: Annotated[
+        bool, typer.Option("--isolated", help="Seek as well motions that hang together with no other; takes longer.")
+    ] = False,
+    order: o.Order = None,
+    node: o.Nodes = None,
+    element: o.Elements = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Periodic motions of springs with stages.
+
+    Stable and unstable ones with their bifurcations, sub-harmonic ones among them, which no linear analysis shows.
+    """
+    return _analysis("periodic", locals())
+
+
+@app.command()
+def subharmonic(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    torque: o.Torques = "",
+    speed: o.Speeds = "",
+    points: Annotated[
+        int | None,
+        typer.Option(
+            "--points",
+            min=2,
+            metavar="N",
+            help="Speeds, and mean torques, of ranges without a step; default: 71 and 26.",
+            show_default=False,
+        ),
+    ] = None,
+    node: o.OneNode = "",
+    element: o.OneElement = "",
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Where a model vibrates at half its engine's order.
+
+    Order 1.5 of a six-cylinder: over speed and mean torque, how strong, and where it begins.
+    """
+    return _analysis("subharmonic", locals())
+
+
+@app.command()
 def report(
     model: o.ModelFile,
     compare: Annotated[

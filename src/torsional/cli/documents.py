@@ -67,7 +67,8 @@ def csv_text(data: xr.Dataset) -> str:
     """A Dataset as CSV: a row for each place in the grid, a column for each variable and node or element.
 
     A table has one grid: variables over fewer dimensions than the first one are repeated along the others, and those
-    over other dimensions are left out.  Complex values take two columns.
+    over other dimensions are left out.  Further coordinates along the rows are told as well.  Complex values take two
+    columns.
     """
     rows = tuple(str(dim) for dim in next(iter(data.data_vars.values())).dims if dim not in PLACES)
     columns = [*_coordinates(data, rows), *_variables(data, rows)]
@@ -94,8 +95,18 @@ def _coordinates(data: xr.Dataset, rows: Sequence[str]) -> Iterator[tuple[str, l
     for dim in rows:
         values = data[dim].broadcast_like(grid).transpose(*rows)
         yield _heading(dim, values), values.values.ravel().tolist()
-        if values.attrs.get("quantity") == "speed":
-            yield f"{dim} [rpm]", (values.values.ravel() * (30 / math.pi)).tolist()
+        yield from _in_rpm(dim, values)
+    for name, further in data.coords.items():
+        if str(name) not in data.dims and further.dims and set(further.dims) <= set(rows):
+            values = further.broadcast_like(grid).transpose(*rows)
+            yield _heading(str(name), values), values.values.ravel().tolist()
+            yield from _in_rpm(str(name), values)
+
+
+def _in_rpm(name: str, values: xr.DataArray) -> Iterator[tuple[str, list[object]]]:
+    """A second column for speeds."""
+    if values.attrs.get("quantity") == "speed":
+        yield f"{name} [rpm]", (values.values.ravel() * (30 / math.pi)).tolist()
 
 
 def _grid(data: xr.Dataset, rows: Sequence[str]) -> xr.DataArray:

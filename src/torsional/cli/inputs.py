@@ -84,6 +84,13 @@ def orders(single: Sequence[float] | None, text: str) -> Array | None:
     return np.unique(np.array(found)) if found else None
 
 
+def checked_values(values: Sequence[float], quantity: str, option: str, text: str) -> None:
+    """Refuse what cannot be and doubt what looks like a forgotten unit, as for every other option."""
+    for value in values:
+        _refuse_backward(value, quantity, option)
+    _doubt(values, quantity, option, text)
+
+
 def affordable(points: int, width: int) -> None:
     """MemoryError for more complex numbers than this machine can hold, rather than an end without a word."""
     try:

@@ -62,6 +62,46 @@ Speeds = Annotated[
         show_default=False,
     ),
 ]
+TorqueOrRange = Annotated[
+    str,
+    typer.Option(
+        "--torque",
+        "-t",
+        metavar="TORQUE",
+        help="Mean engine torque, as '1200 Nm', or a range to follow at one speed; default: full load.",
+        show_default=False,
+    ),
+]
+SpeedOrRange = Annotated[
+    str,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="RANGE",
+        help="Mean engine speeds to follow, as 600:1200rpm, or one where something else is followed; default: the "
+        "file's operating range.",
+        show_default=False,
+    ),
+]
+Parameter = Annotated[
+    str,
+    typer.Option(
+        "--parameter",
+        "-p",
+        metavar="PATH=RANGE",
+        help="A value of the file to follow at one speed and torque, as absorber.stages.1.stiffness=20:60kNm/rad.",
+        show_default=False,
+    ),
+]
+At = Annotated[
+    str,
+    typer.Option(
+        "--at",
+        metavar="VALUE",
+        help="Where to look at the motions themselves, as 940rpm: orders, stages, waveforms.",
+        show_default=False,
+    ),
+]
 Order = Annotated[
     list[float] | None,
     typer.Option("--order", "-n", metavar="N", help="An engine order; may be repeated.", show_default=False),
@@ -77,6 +117,24 @@ Elements = Annotated[
     list[str] | None,
     typer.Option(
         "--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.", show_default=False
+    ),
+]
+OneNode = Annotated[
+    str,
+    typer.Option(
+        "--node",
+        metavar="NAME",
+        help="The node whose acceleration is told; default: the one to be kept quiet.",
+        show_default=False,
+    ),
+]
+OneElement = Annotated[
+    str,
+    typer.Option(
+        "--element",
+        metavar="NAME",
+        help="The connection whose torque is told; default: the first with stages.",
+        show_default=False,
     ),
 ]
 Changes = Annotated[

@@ -8,6 +8,7 @@ from torsional.plots.engine import plot_engine_orders, plot_full_load
 from torsional.plots.maps import plot_map, plot_ratio_map
 from torsional.plots.modes import plot_energy_shares, plot_mode_shapes
 from torsional.plots.orders import plot_gears, plot_order_cuts
+from torsional.plots.periodic import plot_periodic
 from torsional.plots.region import plot_region
 from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
 from torsional.plots.springs import plot_characteristic, plot_travel
@@ -28,6 +29,7 @@ __all__ = [
     "plot_map",
     "plot_mode_shapes",
     "plot_order_cuts",
+    "plot_periodic",
     "plot_ratio_map",
     "plot_region",
     "plot_resonance_speeds",

@@ -13,13 +13,21 @@ from matplotlib.figure import Figure
 from torsional.numerics.arrays import Array
 from torsional.plots import style
 from torsional.quantities import acceleration, amplitude, swing
-from torsional.studies.branches import bifurcation_points, branch_numbers, coexisting, pieces
+from torsional.studies.branches import (
+    bifurcation_points,
+    branch_numbers,
+    coexisting,
+    letter,
+    parameter_quantity,
+    pieces,
+)
 from torsional.units import QUANTITIES, convert
 
 Kind = float | str
 """What is drawn of a signal: an order (its amplitude, 0-peak), "mean", or "swing" (half peak-to-peak)."""
 
 MARKERS = {"fold": "s", "period doubling": "D", "branch point": "^", "Neimark–Sacker": "*"}
+PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.2}
 NOTHING = 1e-9
 """Share of the largest amplitude below which there is nothing but rounding."""
 
@@ -35,6 +43,7 @@ def plot_branches(
     node: str = "",
     quantity: str = "",
     solutions: xr.Dataset | None = None,
+    legend: bool = True,
     axes: Sequence[Axes] | None = None,
 ) -> Figure:
     """Amplitudes over the continued parameter, a panel for each of ``shown``: orders, "mean" or "swing".
@@ -42,7 +51,7 @@ def plot_branches(
     ``result`` as a periodic response is given; of one ``element`` its torque (or ``quantity`` "twist"), of one ``node``
     its acceleration (or "angle").  A colour for each branch, stable motions solid, unstable ones dashed and pale,
     a marker at each bifurcation; ranges with several stable motions are shaded; ``solutions`` at one value of the
-    parameter are marked by their letters.
+    parameter are marked by their letters.  The ``legend`` stands beside the first panel.
     """
     drawn = list(axes) if axes is not None else style.panels(len(shown), 1, (8.0, 2.6), sharex=True)
     signal = signal_of(result, element, node, quantity)
@@ -55,7 +64,8 @@ def plot_branches(
         panel.set_ylabel(_label(signal, kind))
         if number == len(shown) - 1:
             panel.set_xlabel(told)
-    _legend(drawn[0], result)
+    if legend:
+        _legend(drawn[0], result)
     return style.figure_of(drawn[0])
 
 
@@ -76,13 +86,11 @@ def measured(signal: xr.DataArray, kind: Kind) -> Array:
 
 
 def _label(signal: xr.DataArray, kind: Kind) -> str:
+    """What is measured and by which convention, then the quantity with its unit."""
     quantity = str(signal.attrs["quantity"])
     name = {"relative_angle": "twist", "angle": "angle"}.get(quantity, quantity)
-    if kind == "mean":
-        return style.label(quantity, "", f"mean {name}")
-    if kind == "swing":
-        return style.label(quantity, "\nhalf peak-to-peak", name).replace(", \n", ",\n")
-    return style.label(quantity, "0-peak", f"order {float(kind):g}: {name}")
+    told = {"mean": "mean", "swing": "half peak-to-peak"}.get(str(kind), "")
+    return (told or f"order {float(kind):g}, 0-peak") + "\n" + style.label(quantity, name=name)
 
 
 def parameter_axis(result: xr.Dataset) -> tuple[str, float]:
@@ -94,15 +102,6 @@ def parameter_axis(result: xr.Dataset) -> tuple[str, float]:
     factor = 1.0 if entry.unit == entry.shown else convert(1.0, entry.unit, entry.shown)
     told = {"speed": "engine speed", "mean_torque": "mean engine torque"}.get(name, style.plain(name, 60))
     return style.label(entry.name, name=told), factor
-
-
-def parameter_quantity(result: xr.Dataset) -> str:
-    """The continued parameter's name in the nomenclature, by its unit; "ratio" where it has none."""
-    told = str(result.value.attrs.get("quantity", ""))
-    name, unit = str(result.attrs["parameter"]), str(result.attrs.get("parameter_unit", "-"))
-    known = [q.name for q in QUANTITIES.values() if q.unit == unit and unit != "-"]
-    named = [q for q in known if name.rsplit(".", 1)[-1].endswith(q)]
-    return told or next(iter([*named, *known]), "ratio")
 
 
 def branch_colour(number: int) -> str:
@@ -163,12 +162,8 @@ def _mark(axes: Axes, solutions: xr.Dataset, size: Array, scale: float) -> None:
         told[near] = told.get(near, "") + letter(point)
         axes.plot(at, value, "o", mfc="white", color=style.INK, markersize=4.5, zorder=5, gid="solution")
     for y, text in told.items():
-        axes.annotate(text, (at, y), (5, 4), textcoords="offset points", fontsize=8, weight="bold", zorder=6)
-
-
-def letter(number: int) -> str:
-    """The name of a motion among those at one value of the parameter."""
-    return chr(ord("A") + number) if number < 26 else f"({number + 1})"
+        look = {"fontsize": 8, "weight": "bold", "zorder": 6, "bbox": PATCH}
+        axes.annotate(text, (at, y), (5, 4), textcoords="offset points", **look)  # type: ignore[arg-type]
 
 
 def _marker(marker: str) -> dict[str, object]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import groupby
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,6 +9,7 @@ from matplotlib.figure import Figure
 
 from torsional.plots import style
 from torsional.plots.maps import draw_limits
+from torsional.studies.region import boundary_curves
 
 BOUNDARIES = {"period doubling": (style.INK, "-"), "fold": (style.COLOURS[1], "--")}
 COLOURS = "cividis_r"
@@ -74,19 +73,11 @@ def _draw_several(axes: Axes, found: xr.Dataset) -> None:
 
 
 def _draw_boundaries(axes: Axes, found: xr.Dataset) -> None:
-    """Each boundary curve in runs of one kind, a run joined to the one before it."""
-    if "boundary_point" not in found.sizes:
-        return
-    rpm, torque = style.shown(found.boundary_speed), style.shown(found.boundary_torque)
-    curves, kinds = found.boundary_curve.values, found.boundary_kind.values
+    """Each boundary in the colour and dash of its kind."""
     told: set[str] = set()
-    start = 0
-    for (curve, kind), run in groupby(zip(curves, kinds, strict=True)):
-        end = start + len(list(run))
-        first = start - 1 if start and curves[start - 1] == curve else start
-        colour, dash = BOUNDARIES.get(str(kind), (style.FAINT, ":"))
-        look = {"color": colour, "linestyle": dash, "linewidth": 1.8, "zorder": 4}
-        label = "_" if kind in told else str(kind)
-        axes.plot(rpm[first:end], torque[first:end], label=label, gid="boundary", **look)  # type: ignore[arg-type]
-        told.add(str(kind))
-        start = end
+    for kind, curve in boundary_curves(found):
+        colour, dash = BOUNDARIES.get(kind, (style.FAINT, ":"))
+        look = {"color": colour, "linestyle": dash, "linewidth": 1.8, "zorder": 4, "gid": "boundary"}
+        rpm, torque = style.shown(curve[:, 0], "speed"), style.shown(curve[:, 1], "torque")
+        axes.plot(rpm, torque, label="_" if kind in told else kind, **look)  # type: ignore[arg-type]
+        told.add(kind)

@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
 from torsional.plots import style
-from torsional.plots.branches import letter, look
+from torsional.plots.branches import look
 from torsional.quantities import cycles, waveform
-from torsional.studies.branches import SHARE_SAMPLES, stage_parts, stage_shares
+from torsional.studies.branches import SHARE_SAMPLES, letter, stage_parts, stage_shares
 
 STAGES = {"free play": "#ffffff", "stop": "#f2b48c"}
 STAGE_SHADES = ("#dfe9f2", "#aac6de", "#7ba5c9", "#5485b2")
@@ -25,18 +25,24 @@ _PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8}
 
 @style.styled
 def plot_solutions(
-    solutions: xr.Dataset, element: str, law: Law | None = None, *, stiffness: float = 0.0, title: str = ""
+    solutions: xr.Dataset,
+    element: str,
+    law: Law | None = None,
+    *,
+    stiffness: float = 0.0,
+    title: str = "",
+    figure: Figure | SubFigure | None = None,
 ) -> Figure:
     """Motions of one ``element``: twist, stages and torque over crank angle, and beside them torque over twist.
 
     ``solutions``: points of a periodic response, in general those at one value of its parameter; ``law`` and
     ``stiffness`` [Nm/rad] the spring's.  Stages of the law are shaded; under the twist stands which of them the spring
-    is in and what share of the time.
+    is in and what share of the time.  Drawn in ``figure`` or in one of its own.
     """
-    count = solutions.sizes["point"]
-    strip = 0.26 * count if isinstance(law, Hinges) else 0.02
-    figure = Figure(figsize=(10.5, 4.8 + strip))
-    FigureCanvasAgg(figure)
+    strip = strip_height(solutions, law)
+    if figure is None:
+        figure = Figure(figsize=(10.5, 4.8 + strip))
+        FigureCanvasAgg(figure)
     grid = figure.add_gridspec(3, 2, height_ratios=[2.3, strip, 2.3], width_ratios=[1.45, 1.0])
     twist = figure.add_subplot(grid[0, 0])
     stages, torque = (figure.add_subplot(grid[row, 0], sharex=twist) for row in (1, 2))
@@ -50,7 +56,12 @@ def plot_solutions(
         axes.set_xlabel("")
     loop.legend(loc="upper left")
     twist.set_title(style.plain(title, 80), loc="left")
-    return figure
+    return style.figure_of(twist)
+
+
+def strip_height(solutions: xr.Dataset, law: Law | None) -> float:
+    """Height [inch] of the strips of stages, one a motion."""
+    return 0.26 * solutions.sizes["point"] if isinstance(law, Hinges) else 0.02
 
 
 @style.styled

@@ -11,6 +11,7 @@ import xarray as xr
 
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array, IntArray
+from torsional.units import QUANTITIES
 
 Range = tuple[float, float]
 
@@ -18,7 +19,7 @@ SHARE_SAMPLES = 7200
 """Instants of a cycle at which the stage is looked up: shares of time are met to a few hundredths of a per cent."""
 
 NARROW = 2e-4
-"""Overlaps of stable ranges narrower than this share of the whole range come from where branches were cut off."""
+"""Stable ranges and overlaps narrower than this share of the whole range come from where branches were cut off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,24 @@ class Piece:
     stable: bool
 
 
+def parameter_quantity(result: xr.Dataset) -> str:
+    """The continued parameter's name in the nomenclature, by its unit; "ratio" where it has none."""
+    told = str(result.value.attrs.get("quantity", ""))
+    name, unit = str(result.attrs["parameter"]), str(result.attrs.get("parameter_unit", "-"))
+    known = [q.name for q in QUANTITIES.values() if q.unit == unit and unit != "-"]
+    named = [q for q in known if name.rsplit(".", 1)[-1].endswith(q)]
+    return told or next(iter([*named, *known]), "ratio")
+
+
+def letter(number: int) -> str:
+    """The name of a motion among those at one value of the parameter.
+
+    >>> letter(0), letter(30)
+    ('A', '(31)')
+    """
+    return chr(ord("A") + number) if number < 26 else f"({number + 1})"
+
+
 def branch_numbers(result: xr.Dataset) -> list[int]:
     """Numbers of the branches that have points, the main one first."""
     return [int(number) for number in np.unique(result.branch.values)]
@@ -39,18 +58,31 @@ def pieces(result: xr.Dataset) -> list[Piece]:
     """Every branch of a periodic response cut where its stability changes.
 
     A step from a stable point to an unstable one belongs to the unstable piece, so that pieces drawn one after the
-    other leave no gap and a stable piece promises nothing that was not found.
+    other leave no gap and a stable piece promises nothing that was not found.  A branch that leaves another begins at
+    the bifurcation there.
     """
     found: list[Piece] = []
     for number in branch_numbers(result):
         points = np.flatnonzero(result.branch.values == number)
         stable = result.stable.values[points]
+        origin = _origin(result, number, points[0])
+        points, stable = np.append(origin, points), np.append(stable[:1].repeat(len(origin)), stable)
         steps = stable[1:] & stable[:-1]
         edges = [0, *(1 + np.flatnonzero(steps[1:] != steps[:-1])), max(len(steps), 1)]
         for first, last in pairwise(edges):
             held = bool(steps[first]) if len(steps) else bool(stable[0])
             found.append(Piece(number, points[first : last + 1], held))
     return found
+
+
+def _origin(result: xr.Dataset, number: int, first: int) -> IntArray:
+    """The bifurcation on its parent at which a branch begins, as a point; none for a branch without a parent."""
+    known = bifurcation_points(result)
+    on = np.flatnonzero(result.on_branch.values == int(result.parent[number]))
+    if not on.size:
+        return np.zeros(0, dtype=int)
+    distance = np.abs(result.bifurcation_value.values[on] - float(result.value[first]))
+    return np.array([known[int(on[np.argmin(distance)])]])
 
 
 def stable_ranges(result: xr.Dataset, branch: int) -> list[Range]:
@@ -70,7 +102,8 @@ def stable_ranges(result: xr.Dataset, branch: int) -> list[Range]:
                     for i, j in ((run[0], run[0] - 1), (run[-1], run[-1] + 1))
                 ]
                 found.append((min(ends), max(ends)))
-    return found
+    least = NARROW * float(np.ptp(value))
+    return [span for span in found if span[1] - span[0] > least] or found[:1]
 
 
 def _monotone(points: IntArray, value: Array) -> Iterator[IntArray]:
@@ -78,8 +111,10 @@ def _monotone(points: IntArray, value: Array) -> Iterator[IntArray]:
     if len(points) < 3:
         yield points
         return
-    rising = np.diff(value[points]) > 0
-    edges = [0, *(1 + np.flatnonzero(rising[1:] != rising[:-1])), len(points) - 1]
+    way = np.sign(np.diff(value[points]))
+    way = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]  # resting is no turn
+    turns = 1 + np.flatnonzero(way[1:] * way[:-1] < 0)
+    edges = [0, *turns, len(points) - 1]
     yield from (points[first : last + 1] for first, last in pairwise(edges))
 
 
@@ -99,6 +134,18 @@ def coexisting(result: xr.Dataset) -> list[tuple[Range, list[int]]]:
             found.append(((low, high), here))
     least = NARROW * float(np.ptp(result.value.values))
     return [(span, here) for span, here in found if len(here) > 1 and span[1] - span[0] > least]
+
+
+def without_stable(result: xr.Dataset) -> list[Range]:
+    """Ranges of the parameter in which no stable motion was found: what happens there is on no branch that is known."""
+    value = result.value.values
+    least, reached = NARROW * float(np.ptp(value)), float(value.min())
+    found = []
+    for low, high in sorted(span for n in branch_numbers(result) for span in stable_ranges(result, n)):
+        if low - reached > least:
+            found.append((reached, low))
+        reached = max(reached, high)
+    return [*found, (reached, float(value.max()))] if value.max() - reached > least else found
 
 
 def solutions_at(result: xr.Dataset, value: float) -> xr.Dataset:

@@ -39,11 +39,13 @@ def model_response(
     base_order: float | None = None,
     depth: int = 2,
     stability: bool = True,
+    isolated: bool = False,
 ) -> xr.Dataset:
     """`periodic_response` of a ``model`` in one ``gear`` over a range of ``speed`` [rad/s] at one mean engine
     ``torque`` [Nm], or at full load where that is None.
 
-    ``at``: speeds at which every branch that passes them gets a point.
+    ``at``: speeds at which every branch that passes them gets a point.  Branches that hang together with none of those
+    are sought where ``isolated``.
     Of the engine's orders those are taken that its cylinders have in common (every third of an evenly fired six), since
     on a stiff crankshaft the others cancel; with ``base_order`` 0.5 all are, and what was a bifurcation to twice the
     period is then rounded off by the small excitation at its own order.
@@ -60,6 +62,7 @@ def model_response(
         base_order=base_order or load.base_order,
         depth=depth,
         stability=stability,
+        isolated=isolated,
         at=at,
     )
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
@@ -83,9 +86,9 @@ def varied_response(
     """`periodic_response` of a ``model`` over a value of its file, or over the mean torque, at one ``speed`` [rad/s].
 
     ``path`` names the value, as in ``absorber.stages.1.stiffness``, and ``span`` its range in SI units; "torque" stands
-    for the mean engine torque [Nm]; ``at``: values at which every branch that passes them gets a point.  Raises ModelError as `model_response` does, and for a path the model does not have.
+    for the mean engine torque [Nm]; ``at``: values at which every branch that passes them gets a point.  Raises
+    ModelError as `model_response` does, and for a path the model does not have.
     """
-    settings = {"highest_order": highest_order, "depth": depth, "stability": stability, "isolated": isolated}
     system, hold = assemble(model.powertrain(gear or None)), model.landmarks.load
     if path == "torque":
         load = engine_torque_load(model, speed, span, highest_order, base_order)
@@ -100,8 +103,19 @@ def varied_response(
         parameter = Variation(path, "", build)
     base = base_order or load.base_order
     data = periodic_response(
-        system, load, span, parameter=parameter, hold=hold, speed=speed, base_order=base, at=at, **settings
-    )  # type: ignore[arg-type]
+        system,
+        load,
+        span,
+        parameter=parameter,
+        hold=hold,
+        speed=speed,
+        highest_order=highest_order,
+        base_order=base,
+        depth=depth,
+        stability=stability,
+        isolated=isolated,
+        at=at,
+    )
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
 
 
