@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
 from torsional.files import load_model
-from torsional.studies.claims import Outcome, judged
+from torsional.studies.claims import CLAIMS, Outcome
 from torsional.studies.claims.trucks import Trucks
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -15,10 +16,29 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture(scope="session")
 def trucks() -> Trucks:
-    files = ["smf", "dmf", "psva", "dmf_tva", "planetary_dmf", "dmf_pendulum"]
+    files = ["smf", "dmf", "psva", "dmf_tva", "planetary_dmf", "dmf_pendulum", "dmf_two_stage"]
     return Trucks(*(load_model(EXAMPLES / f"truck_{name}.yaml") for name in files))
 
 
+class Judged(Mapping[str, Outcome]):
+    """Outcomes by claim id, each worked out when it is first asked for."""
+
+    def __init__(self, trucks: Trucks) -> None:
+        self.trucks = trucks
+        self.known: dict[str, Outcome] = {}
+
+    def __getitem__(self, id: str) -> Outcome:
+        if id not in self.known:
+            self.known[id] = CLAIMS[id](self.trucks)
+        return self.known[id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(CLAIMS)
+
+    def __len__(self) -> int:
+        return len(CLAIMS)
+
+
 @pytest.fixture(scope="session")
-def outcomes(trucks: Trucks) -> dict[str, Outcome]:
-    return {outcome.claim.id: outcome for outcome in judged(trucks)}
+def outcomes(trucks: Trucks) -> Mapping[str, Outcome]:
+    return Judged(trucks)

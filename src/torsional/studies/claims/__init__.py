@@ -19,6 +19,11 @@ _THEMES = {
     "comparison": "A10 A11 A14",
     "power_split": "C1 C2 C3 C6",
     "planetary": "C4 C5",
+    "friction": "A5 A9",
+    "stages": "A12",
+    "subharmonic": "B1 B2 B3 B4",
+    "coexistence": "B5",
+    "idle": "B6",
     "tuned": "D1 D2 D3 D4",
     "pendulum": "G1",
 }

@@ -18,8 +18,9 @@ from torsional.stamps import GROUND, Mass
 
 @dataclass(frozen=True, eq=False)
 class Trucks:
-    """One truck with six absorbers: single mass flywheel, dual mass flywheel (of one stage), power split absorber,
-    flange absorber (TVA), planetary dual mass flywheel, dual mass flywheel with centrifugal pendulum.
+    """One truck with seven absorbers: single mass flywheel, dual mass flywheel (of one stage), power split absorber,
+    flange absorber (TVA), planetary dual mass flywheel, dual mass flywheel with centrifugal pendulum, dual mass
+    flywheel of two stages.
 
     Landmarks must be set; the parts of an absorber bear the names that `torsional.absorbers` gives them.
     """
@@ -30,6 +31,7 @@ class Trucks:
     tva: Model
     planetary: Model
     pendulum: Model
+    two_stage: Model
 
 
 def mapped(model: Model, change: Callable[[dict[str, Component]], dict[str, Component]]) -> Model:
@@ -66,6 +68,14 @@ def joined(model: Model, **parts: Component) -> Model:
 def sprung(model: Model, name: str, stiffness: float) -> Model:
     """A copy whose coupling ``name`` is one linear stage of this stiffness [Nm/rad]."""
     return replaced(model, name, law=Hinges(float(stiffness)))
+
+
+def hinged(model: Model, name: str) -> Hinges:
+    """The piecewise-linear law of a coupling; raises ModelError for any other law."""
+    law = _coupling(model, name).law
+    if not isinstance(law, Hinges):
+        raise ModelError("a piecewise-linear law is needed", where=name, found=type(law).__name__)
+    return law
 
 
 def stiffness(model: Model, name: str) -> float:

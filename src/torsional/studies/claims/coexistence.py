@@ -1,0 +1,136 @@
+"""The claim that several stable motions exist at one speed and load (B5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.periodic.branches import Explorer
+from torsional.solvers.periodic.problem import HarmonicProblem
+from torsional.studies.claims.answers import engine_of, floats, main_order
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.motions import (
+    distinct,
+    in_time,
+    over_torque,
+    rest_of,
+    stable,
+    state_of,
+    twist_orders,
+    twist_swing,
+)
+from torsional.studies.claims.trucks import Trucks, hinged, replaced
+
+DAMPINGS = (20.0, 15.0, 10.0, 5.0)
+"""Dampings of the DMF [Nms/rad] that are asked, the shipped one first; the first with an answer is shown in time."""
+SPEEDS = np.arange(840.0, 981.0, 20.0) * RPM
+LOWEST, GRID = 800.0, 25.0
+"""Lowest mean torque and step [Nm]."""
+CONDITION = (
+    "two-stage DMF, transition 1000 Nm, top gear, 840–980 rpm in steps of 20, mean torques in steps of 25 Nm, motions "
+    "short of the stop; orders 0-peak"
+)
+NONE = (
+    "at the shipped damping no place has two: there the doubled branch has no folds, and the third order is stable "
+    "only where that branch has ended; so the claim is shown on a DMF with less damping"
+)
+OFF, SETTLING = 1.03, 600
+"""Factor on a motion at the start of a run in time, and periods of the firing in which it settles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A speed [rad/s] and mean torque [Nm] with its stable motions."""
+
+    explorer: Explorer
+    speed: float
+    torque: float
+    motions: tuple[tuple[HarmonicProblem, Array], ...]
+
+
+def places(model: Model, speed: float) -> list[Place]:
+    """The grid points over mean torque, within full load, at which more than one motion short of the stop is stable."""
+    grid = np.arange(LOWEST, float(engine_of(model).full_load_torque(speed)), GRID)
+    explorer = over_torque(model, speed, (float(grid[0]), float(grid[-1])))
+    if not any(branch.events for branch in explorer.branches[1:]):
+        return []
+    found, stop = [], max(hinged(model, model.landmarks.springs[0]).stops)
+    for torque in map(float, grid):
+        motions = tuple(
+            (p, z) for p, z in distinct(explorer, torque) if twist_swing(p, z)[1] < stop and stable(p, z[None])[0]
+        )
+        found += [Place(explorer, speed, torque, motions)] if len(motions) > 1 else []
+    return found
+
+
+def returns(place: Place, problem: HarmonicProblem, z: Array) -> tuple[float, float]:
+    """Largest harmonic of the DMF's twist [rad] of a motion, and the relative error of it and of half the firing order,
+    after a run in time that began off the motion."""
+    timed = in_time(place.explorer, place.torque)
+    start = rest_of(problem, z, timed)
+    start = start + OFF * (state_of(problem, z, timed) - start)
+    found = twist_orders(timed, timed.flow(start, SETTLING).state, 2)
+    step = round(2 * problem.base_order / place.explorer.base_order)
+    told = np.zeros(found.size)
+    own = np.abs(problem.harmonics_of(z)[0])
+    told[::step] = own[: told[::step].size]
+    return float(told[1:].max()), float(np.abs(found[1:3] - told[1:3]).max() / told[1:].max())
+
+
+def _size(problem: HarmonicProblem, z: Array, order: float) -> float:
+    """0-peak of one order of the DMF's twist [rad]."""
+    harmonics, place = problem.harmonics_of(z)[0], order / problem.base_order
+    return float(abs(harmonics[round(place)])) if abs(place - round(place)) < 1e-9 else 0.0
+
+
+def _apart(place: Place) -> float:
+    """How far the two motions that are most alike in order 1.5 are from each other, over the largest."""
+    half = 0.5 * place.explorer.base_order
+    sizes = np.sort([_size(p, z, half) for p, z in place.motions])
+    return float(np.diff(sizes).min() / (sizes.max() or 1.0))
+
+
+def _told(found: list[Place]) -> list[str]:
+    """Speeds with the mean torques between which motions coexist."""
+    told = []
+    for speed in sorted({place.speed for place in found}):
+        torques = [place.torque for place in found if place.speed == speed]
+        ends = dict.fromkeys(f"{torque:g}" for torque in (min(torques), max(torques)))
+        told.append(f"{speed / RPM:.0f} rpm: {'–'.join(ends)} Nm")
+    return told
+
+
+@claim(
+    "B5",
+    "6.1",
+    "Several stable steady states can coexist at one speed and load.",
+    "at one speed and mean torque, within full load, at least two stable periodic motions; runs in time that begin 3 % "
+    "off either stay with it, orders 1.5 and 3 within 2 %",
+)
+def b5(trucks: Trucks) -> Finding:
+    spring = trucks.two_stage.landmarks.springs[0]
+    variants = {c: replaced(trucks.two_stage, spring, damping=c) for c in DAMPINGS}
+    found = {c: [place for speed in SPEEDS for place in places(m, float(speed))] for c, m in variants.items()}
+    figures: dict[str, Figure] = {f"{c:g} Nms/rad: where": tuple(_told(found[c])) for c in DAMPINGS}
+    answered = [c for c in DAMPINGS if found[c]]
+    if not answered:
+        return Finding(False, CONDITION, figures, "no stable motions beside each other were found")
+    shown = max(found[answered[0]], key=_apart)
+    stop = max(hinged(trucks.two_stage, spring).stops)
+    runs = [returns(shown, problem, z) for problem, z in shown.motions]
+    half = main_order(trucks.two_stage) / 2
+    figures |= {
+        "shown at [Nms/rad]": answered[0],
+        "shown at [rpm]": shown.speed / RPM,
+        "shown at [Nm]": shown.torque,
+        "DMF twist of order 1.5 [rad]": floats([_size(p, z, half) for p, z in shown.motions]),
+        "DMF twist of order 3 [rad]": floats([_size(p, z, 2 * half) for p, z in shown.motions]),
+        "largest twist over the stop's [-]": floats([twist_swing(p, z)[1] / stop for p, z in shown.motions]),
+        "difference to the run in time [%]": floats([100 * error for _, error in runs]),
+    }
+    good = len(runs) > 1 and max(error for _, error in runs) < 0.02
+    reason = "" if found[DAMPINGS[0]] else NONE
+    return Finding(good, CONDITION, figures, reason)

@@ -1,0 +1,192 @@
+"""Claims about dry friction in the clutch damper (A5, A9)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from torsional.components import Coupling
+from torsional.errors import ModelError
+from torsional.laws import Jenkins
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.periodic.branches import Branch
+from torsional.solvers.periodic.states import states
+from torsional.studies.claims.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
+from torsional.studies.claims.base import Figure, Finding, claim, shown
+from torsional.studies.claims.motions import over_speed
+from torsional.studies.claims.strongest import crest
+from torsional.studies.claims.trucks import Trucks, joined, replaced
+
+WASHER = "clutch_friction"
+STICKING = 1e5
+"""Stiffness of a washer that sticks [Nm/rad], four times the clutch damper's."""
+SWEEP = np.array([10.0, 30.0, 60.0, 90.0, 120.0, 150.0])
+"""Friction torques [Nm] of the sweep, the range of trucks' clutches and a little below it."""
+FAR = 1500 * RPM
+ORDERS = 9.0
+"""Highest order: the third and its next multiples."""
+LIGHT = 0.2
+"""Viscous damping left in a clutch that relies on its washer, over the shipped one."""
+AROUND = (600 * RPM, 1000 * RPM)
+"""Speeds among which the resonance is sought."""
+MOST = 600.0
+"""Largest friction torque [Nm] that is tried."""
+LEAST = 1.0
+"""Friction torque [Nm] that stands for a clutch without a washer."""
+LIMITS, HIGHER = (1200.0, 1500.0, 1800.0), (2500.0, 3000.0, 3500.0)
+"""Amplitudes [rad/s²] under which the resonance is to be brought."""
+CONDITION = (
+    "mean torque 60 % of the peak, top gear; firing order's acceleration at the gearbox input, half peak-to-peak; a "
+    "washer of 100 kNm/rad beside the clutch damper"
+)
+MECHANISM = (
+    "where the clutch twists much the washer slips and takes energy out of the resonance; where it twists little the "
+    "washer sticks for most of the time and is one more spring beside the damper's, which lets more through"
+)
+UNREACHED = (
+    "with little viscous damping in the clutch no washer of up to 600 Nm brings the single mass flywheel's resonance "
+    "under the lower limits: with more friction the washer sticks and moves the resonance up instead"
+)
+
+
+def washed(model: Model, torque: float, viscous: float = 1.0) -> Model:
+    """A copy with a friction washer [Nm] beside the clutch damper, whose viscous damping is multiplied."""
+    name = model.landmarks.clutch
+    clutch: Any = model.components[name]
+    model = replaced(model, name, damping=viscous * clutch.damping)
+    return model if not torque else joined(model, **{WASHER: Coupling(clutch.a, clutch.b, Jenkins(torque, STICKING))})
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Amplitude [rad/s²] of the firing order at the input and the washer's mean power [W] over speed [rad/s]."""
+
+    speed: Array
+    amplitude: Array
+    power: Array
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """The largest amplitude and its speed, between the points by a parabola."""
+        top = int(np.clip(self.amplitude.argmax(), 1, self.speed.size - 2))
+        three = slice(top - 1, top + 2)
+        at = crest(self.speed[three], self.amplitude[three])
+        at = float(np.clip(at, *self.speed[[top - 1, top + 1]]))
+        return float(np.polyval(np.polyfit(self.speed[three] - at, self.amplitude[three], 2), 0.0)), at
+
+    def at(self, speed: float, values: Array) -> float:
+        """A value between the points."""
+        return float(np.interp(speed, self.speed, values))
+
+
+def curve(model: Model, branch: Branch) -> Curve:
+    """Amplitude and power along a branch."""
+    told, system, speed = states(branch.problem, branch.scaled), branch.problem.setting.split.system, branch.values
+    place = round(main_order(model) / branch.base_order)
+    input_angle = told.angle[:, place, system.node_index(model.landmarks.input)]
+    washer = system.connections.names.index(WASHER)
+    omega = np.multiply.outer(speed, branch.base_order * np.arange(told.twist.shape[1]))
+    rate = 1j * omega * told.twist[:, :, washer]
+    power = 0.5 * (told.torque[:, :, washer] * rate.conj()).real.sum(axis=1)
+    return Curve(speed, np.abs(input_angle) * (main_order(model) * speed) ** 2, power)
+
+
+def answered(model: Model, speed: tuple[float, float]) -> Curve:
+    """The answer over a range of speed [rad/s], pieced together of all branches by rising speed.
+
+    A washer that sticks holds any mean torque, so that branches may end where it comes to stick; the vibration is the
+    same on the one that goes on.  Raises ModelError where no branch reaches an end of the range.
+    """
+    explorer = over_speed(model, speed, mean_torque(model), depth=0, highest_order=ORDERS)
+    parts = [curve(model, branch) for branch in explorer.branches]
+    at = np.concatenate([part.speed for part in parts])
+    rise = np.argsort(at)
+    if at[rise[0]] > speed[0] * 1.001 or at[rise[-1]] < speed[1] * 0.999:
+        found = f"{at.min() / RPM:.0f} to {at.max() / RPM:.0f} rpm"
+        raise ModelError("the motions do not span the range", where="speed", found=found)
+    return Curve(
+        at[rise],
+        np.concatenate([part.amplitude for part in parts])[rise],
+        np.concatenate([part.power for part in parts])[rise],
+    )
+
+
+@claim(
+    "A5",
+    "2.1",
+    "Clutch friction limits the resonance of a single mass flywheel, but it costs power and raises vibration far from "
+    "the resonance.",
+    "over a sweep of the washer's friction torque the largest amplitude falls strictly, the amplitude at 1500 rpm "
+    "rises strictly, and the friction power at the resonance is positive and rises strictly",
+)
+def a5(trucks: Trucks) -> Finding:
+    model, ends = trucks.smf, (AROUND[0], FAR)
+    found = [answered(washed(model, float(torque)), ends) for torque in SWEEP]
+    peak, place = (np.array([one.peak[i] for one in found]) for i in (0, 1))
+    far = np.array([one.at(FAR, one.amplitude) for one in found])
+    power = np.array([one.at(one.peak[1], one.power) for one in found])
+    far_power = np.array([one.at(FAR, one.power) for one in found])
+    bare = at_input(model, np.append(np.arange(*AROUND, RPM), FAR))
+    figures: dict[str, Figure] = {
+        "friction torque [Nm]": floats(SWEEP),
+        "largest amplitude [rad/s²]": floats(peak),
+        "its speed [rpm]": floats(place / RPM),
+        "amplitude at 1500 rpm [rad/s²]": floats(far),
+        "friction power at the resonance [W]": floats(power),
+        "friction power at 1500 rpm [W]": floats(far_power),
+        "without washer: largest, and at 1500 rpm [rad/s²]": (float(bare[:-1].max()), float(bare[-1])),
+    }
+    values = {"peak": (peak, "acceleration"), "far": (far, "acceleration"), "power": (power, "power")}
+    data = sweep("A5", "friction_torque", SWEEP, "torque", **values)
+    good = falling(peak) and rising(far) and rising(power) and bool((power > 0).all())
+    return Finding(good, f"{CONDITION}; viscous damping as shipped beside it", figures, MECHANISM, data)
+
+
+def needed(model: Model, limit: float, viscous: float) -> float:
+    """The friction torque [Nm] that brings the largest amplitude about the resonance under a limit [rad/s²].
+
+    0 where none is needed, infinity where the largest that is tried does not.
+    """
+
+    def excess(torque: float) -> float:
+        return answered(washed(model, torque, viscous), AROUND).peak[0] - limit
+
+    if excess(LEAST) <= 0:
+        return 0.0
+    return float(brentq(excess, LEAST, MOST, xtol=0.05)) if excess(MOST) < 0 else float("inf")
+
+
+@claim(
+    "A9",
+    "6.1",
+    "The right clutch friction avoids severe excitation of the clutch mode with a dual mass flywheel, and less of it "
+    "is needed than for the resonance with a single mass flywheel.",
+    "friction torque that brings the largest amplitude about the resonance under common limits: smaller with the dual "
+    "mass flywheel for every limit, in a clutch that relies on its washer",
+)
+def a9(trucks: Trucks) -> Finding:
+    figures: dict[str, Figure] = {}
+    good = True
+    for viscous, limits in ((LIGHT, LIMITS), (LIGHT, HIGHER), (1.0, HIGHER)):
+        torques = {name: [needed(m, limit, viscous) for limit in limits] for name, m in _pair(trucks).items()}
+        label = f"viscous damping × {viscous:g}, limits {', '.join(f'{limit:g}' for limit in limits)} rad/s²"
+        figures |= {f"{label}: {name} [Nm]": tuple(map(_told, found)) for name, found in torques.items()}
+        good &= all(double < single for single, double in zip(*torques.values(), strict=True))
+    bare = {name: answered(washed(m, LEAST, LIGHT), AROUND).peak for name, m in _pair(trucks).items()}
+    figures |= {f"viscous damping × {LIGHT:g}: {name} with {LEAST:g} Nm [rad/s²]": p for name, (p, _) in bare.items()}
+    figures |= {f"viscous damping × {LIGHT:g}: {name} at [rpm]": at / RPM for name, (_, at) in bare.items()}
+    best = answered(washed(trucks.smf, MOST, LIGHT), AROUND).peak[0]
+    figures[f"viscous damping × {LIGHT:g}: SMF with {MOST:g} Nm [rad/s²]"] = best
+    return Finding(good, CONDITION, figures, UNREACHED if best > max(LIMITS) else "")
+
+
+def _told(torque: float) -> str:
+    return shown(torque) if np.isfinite(torque) else f"more than {MOST:g}"
+
+
+def _pair(trucks: Trucks) -> dict[str, Model]:
+    return {"SMF": trucks.smf, "DMF": trucks.dmf}

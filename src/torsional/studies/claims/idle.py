@@ -1,0 +1,182 @@
+"""The claim about a dual mass flywheel with lash at idle (B6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from torsional.components import GearPair
+from torsional.engine import Excitation
+from torsional.laws import Hinges
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.numerics.piecewise_motion import PiecewiseMotion, Trajectory
+from torsional.results import dataset
+from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.periodic.equations import Split
+from torsional.solvers.periodic.stability import stage_bases
+from torsional.studies.claims.answers import engine_of, floats, main_order
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, hinged, reached, replaced, stiffness, within
+from torsional.system import System, assemble
+
+LASH = 2.0
+"""Whole free angle [deg] of the case that is shown; it has the shipped stiffness and damping."""
+LASHES, DAMPINGS = (1.5, 2.0, 3.0, 4.0, 6.0), (20.0, 10.0, 5.0)
+"""Where sustained vibration is looked for: lash [deg] and damping [Nms/rad]."""
+PULSES = (250.0, 500.0, 1000.0)
+"""Torque pulses on the crankshaft [Nm], each for one period of the firing."""
+HARMONICS, BEFORE, SETTLING, SEEN = 6, 100, 800, 12
+"""Multiples of the firing order, periods before the pulse, periods in which what follows settles, periods looked at."""
+LONGEST, REPEATS = 6, 1e-6
+"""Periods within which a motion must repeat itself, to which share of its largest state."""
+CONDITION = (
+    "one-stage DMF with lash, stiffness and damping as shipped, idle speed, gearbox in neutral, no mean torque; half "
+    "peak-to-peak"
+)
+
+
+def neutral(model: Model, lash: float, damping: float) -> Model:
+    """A copy with ``lash`` [rad] in its one-stage DMF and the gearbox in neutral: all behind the gears is left out."""
+    spring = model.landmarks.springs[0]
+    own = hinged(model, spring)
+    listed = [(float(own.torque(max(own.stops))), stiffness(model, spring))]
+    law = Hinges.staged(listed, lash=lash, stop_stiffness=float(own.tangent(2 * max(own.stops))))
+    changed = replaced(model, spring, law=law, damping=damping)
+    parts = {**changed.components, **changed.gears[changed.top_gear].components}
+    whole = changed.replaced(components=parts, gears={}, document={})
+    meshing = [name for name, part in changed.gears[changed.top_gear].components.items() if isinstance(part, GearPair)]
+    nodes = reached(whole.powertrain(), [changed.landmarks.input], meshing)
+    return whole.replaced(components=within(whole, nodes), document={})
+
+
+@dataclass(frozen=True, eq=False)
+class Idle:
+    """A model in neutral with ``lash`` [rad], idling in time."""
+
+    model: Model
+    lash: float
+    system: System
+    timed: PiecewiseMotion
+
+    @classmethod
+    def of(cls, model: Model, lash: float, damping: float) -> Idle:
+        """With lash [rad] and damping [Nms/rad] in the DMF."""
+        standing = neutral(model, lash, damping)
+        system, speed = assemble(standing.powertrain()), model.operation.idle
+        load = _excited(standing)
+        onto = np.array([system.T[system.node_index(node)] for node in load.nodes])
+        torques = np.concatenate([np.zeros((1, len(onto[0]))), load.torque.T @ onto])
+        timed = PiecewiseMotion(stage_bases(Split(system, speed)), torques, main_order(model) * speed)
+        return cls(standing, lash, system, timed)
+
+    @cached_property
+    def inside(self) -> Array:
+        """The state at the crank angle zero of the motion about the middle of the lash, which touches no spring."""
+        spring = self.model.landmarks.springs[0]
+        loose = assemble(replaced(self.model, spring, law=Hinges(0.0)).powertrain())
+        found = harmonic_response(loose, _excited(self.model)).angle.isel(speed=0).transpose("order", "node").values
+        q = np.linalg.lstsq(self.system.T, found.T, rcond=None)[0].T
+        omega = self.timed.base_frequency * np.arange(1, HARMONICS + 1)[:, None]
+        return self.timed.bases.coordinates.state(q.real.sum(axis=0), (1j * omega * q).real.sum(axis=0))
+
+    def pushed(self, state: Array, torque: float, settling: int = SETTLING) -> Array:
+        """The state long after a pulse [Nm] on the crankshaft."""
+        on = self.system.T[self.system.node_index(self.model.landmarks.crankshaft)] * torque
+        return self.timed.flow(state, settling, pulse=(0.0, self.timed.period, on)).state
+
+    def twist(self, motion: Trajectory) -> Array:
+        """Angle of the DMF [rad] in time."""
+        place = self.system.connections.names.index(self.model.landmarks.springs[0])
+        return np.asarray(motion.angles @ self.system.connections.weights[place])
+
+    def swing(self, motion: Trajectory, node: str) -> float:
+        """Half the swing of a node's speed [rad/s]."""
+        return float(np.ptp(motion.rates @ self.system.T[self.system.node_index(node)]) / 2)
+
+    def repeats(self, state: Array) -> int:
+        """After how many periods of the firing a motion repeats itself; 0 for none up to `LONGEST`."""
+        strobes = [state]
+        for _ in range(2 * LONGEST):
+            strobes.append(self.timed.flow(strobes[-1], 1).state)
+        seen = np.array(strobes)
+        gaps = [np.abs(seen[n:] - seen[:-n]).max() / np.abs(seen).max() for n in range(1, LONGEST + 1)]
+        return next((n for n, gap in enumerate(gaps, 1) if gap < REPEATS), 0)
+
+    def sustained(self) -> float:
+        """The smallest of `PULSES` after which the springs keep being met, or infinity."""
+        free = np.ptp(self.twist(self.timed.run(self.inside, 1)))
+        for torque in PULSES:
+            end = self.pushed(self.inside, torque)
+            if np.ptp(self.twist(self.timed.run(end, SEEN))) > max(1.2 * free, 1.001 * self.lash):
+                return torque
+        return np.inf
+
+
+def _excited(model: Model) -> Excitation:
+    """The engine's torques at idle without mean torque, in multiples of its firing order."""
+    orders = main_order(model) * np.arange(1, HARMONICS + 1)
+    return engine_of(model).excitation(model.landmarks.throws, model.operation.idle, 0.0, orders)
+
+
+@claim(
+    "B6",
+    "3.3",
+    "At idle inside the lash the secondary side is isolated; a torque disturbance can push the motion past the lash "
+    "and start sub-harmonic vibration.",
+    "a run in time with a torque pulse: before it the springs are not met and the gearbox input swings by less than a "
+    "quarter of the crankshaft; after it the springs keep being met, the motion repeats itself after two periods of "
+    "the firing or more, and the input swings at least twice as much as before",
+)
+def b6(trucks: Trucks) -> Finding:
+    model, spring = trucks.dmf, trucks.dmf.landmarks.springs[0]
+    shipped = float(model.components[spring].damping)  # type: ignore[attr-defined]
+    idle = Idle.of(model, np.deg2rad(LASH), shipped)
+    start = idle.timed.flow(idle.inside, BEFORE)
+    torque = idle.sustained()
+    before, after = idle.timed.run(start.state, SEEN), None
+    region = {c: [Idle.of(model, np.deg2rad(lash), c).sustained() for lash in LASHES] for c in DAMPINGS}
+    quiet, marks = idle.swing(before, model.landmarks.input), model.landmarks
+    figures: dict[str, Figure] = {
+        "lash [deg]": LASH,
+        "before: DMF twist [deg]": floats(np.rad2deg([idle.twist(before).min(), idle.twist(before).max()])),
+        "before: crankshaft and input speed [rad/s]": (idle.swing(before, marks.crankshaft), quiet),
+    }
+    good = len(start.times) == 1 and quiet < 0.25 * idle.swing(before, marks.crankshaft)
+    if np.isfinite(torque):
+        end = idle.pushed(start.state, torque)
+        after, count = idle.timed.run(end, SEEN), idle.repeats(end)
+        loud = idle.swing(after, marks.input)
+        figures |= {
+            "pulse for one period of the firing [Nm]": torque,
+            "after: DMF twist [deg]": floats(np.rad2deg([idle.twist(after).min(), idle.twist(after).max()])),
+            "after: crankshaft and input speed [rad/s]": (idle.swing(after, marks.crankshaft), loud),
+            "after: order of the slowest part [-]": main_order(model) / count if count else np.nan,
+        }
+        good = good and count > 1 and loud > 2 * quiet
+    figures |= {f"{c:g} Nms/rad: lashes with sustained vibration [deg]": _met(told) for c, told in region.items()}
+    return Finding(good and after is not None, CONDITION, figures, _reason(region), _drawn(idle, before, after))
+
+
+def _met(found: list[float]) -> tuple[float, ...]:
+    return tuple(lash for lash, torque in zip(LASHES, found, strict=True) if np.isfinite(torque))
+
+
+def _reason(region: dict[float, list[float]]) -> str:
+    quiet = [c for c, told in region.items() if not np.isfinite(told).all()]
+    if not quiet:
+        return ""
+    return (
+        f"pulses of up to {max(PULSES):g} Nm leave no lasting vibration where lash and damping are large: the damping "
+        "beside the springs acts within the lash too, and brings the motion to rest there before it reaches the other "
+        "side"
+    )
+
+
+def _drawn(idle: Idle, before: Trajectory, after: Trajectory | None) -> xr.Dataset:
+    told = {"before": before} | ({"after": after} if after is not None else {})
+    values = {name: (("time",), idle.twist(motion), "relative_angle") for name, motion in told.items()}
+    return dataset(values, {"time": (before.times, "time")}, analysis="claim B6")

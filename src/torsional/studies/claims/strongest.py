@@ -1,0 +1,124 @@
+"""Where sub-harmonic vibration is strongest over speed and mean torque, and where it begins over the stiffness step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq, minimize_scalar
+
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.periodic.branches import Branch
+from torsional.studies.claims.motions import amplitudes, doubled, doubling_margin, over_torque
+
+TORQUES = (700.0, 2300.0)
+"""Mean torques [Nm] that are searched."""
+HIGHEST_ORDER = 12.0
+"""Half orders beyond it change the largest amplitudes by less than 0.01 %."""
+FIRST_LOOK = np.arange(720.0, 1121.0, 40.0) * RPM
+STEP, NEAR = 12 * RPM, 0.5 * RPM
+REFINEMENTS = 3
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A largest amplitude, and the speed [rad/s] and mean torque [Nm] at which it occurs."""
+
+    amplitude: float
+    speed: float
+    torque: float
+
+
+@dataclass(eq=False)
+class Search:
+    """Largest amplitudes of half the firing order over speed and mean torque.
+
+    At each speed branches are followed over the mean torque, through their folds, so that motions that are isolated
+    over speed are met too; over speed the largest is climbed to and taken
+    from parabolas.
+    """
+
+    model: Model
+    order: float
+    seen: dict[float, Array] = field(default_factory=dict)
+
+    def at(self, speed: float) -> Array:
+        """Largest amplitudes of the quantities (4,) and their mean torques (4,) at one speed, as (2, 4)."""
+        if speed not in self.seen:
+            explorer = over_torque(self.model, speed, TORQUES, highest_order=HIGHEST_ORDER)
+            best = np.zeros((2, 4))
+            for branch in doubled(explorer):
+                found = crests(branch, amplitudes(self.model, branch, self.order))
+                best = np.where(found[0] > best[0], found, best)
+            self.seen[speed] = best
+        return self.seen[speed]
+
+    def peak(self, quantity: int, near: float | None = None) -> Peak:
+        """The largest amplitude of one quantity, sought uphill from a speed ``near`` it."""
+
+        def size(speed: float) -> float:
+            return float(self.at(speed)[0, quantity])
+
+        top = self._climbed(size, near)
+        for _ in range(REFINEMENTS):
+            speeds = sorted(self.seen)
+            place = speeds.index(top)
+            three = np.array(speeds[place - 1 : place + 2])
+            vertex = float(crest(three, np.array([size(speed) for speed in three])))
+            if np.abs(three - vertex).min() < NEAR:
+                break
+            top = max(top, vertex, key=size)
+        amplitude, torque = self.at(top)[:, quantity]
+        return Peak(float(amplitude), top, float(torque))
+
+    def _climbed(self, size: Callable[[float], float], near: float | None) -> float:
+        """A speed that is higher than those a step below and above."""
+        top = near if near is not None and size(near) else max(map(float, FIRST_LOOK), key=size)
+        while max(size(top - STEP), size(top + STEP)) > size(top):
+            top = max(top - STEP, top + STEP, key=size)
+        return max((speed for speed in self.seen if abs(speed - top) <= STEP), key=size)
+
+
+def crest(at: Array, values: Array) -> float:
+    """Where the parabola through three values is highest."""
+    curved, slope, _ = np.polyfit(at - at[1], values, 2)
+    return float(at[1] - 0.5 * slope / curved)
+
+
+def crests(branch: Branch, values: Array) -> Array:
+    """Largest values (q,) along a branch between its points, and the parameter there, as (2, q)."""
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(branch.scaled, axis=0), axis=1))])
+    kept = np.concatenate([[True], np.diff(way) > 1e-9])
+    way, values, parameter = way[kept], values[:, kept], branch.values[kept]
+    if way.size < 4:
+        return np.array([values.max(axis=1), parameter[values.argmax(axis=1)]])
+    curve, along = CubicSpline(way, values, axis=1), CubicSpline(way, parameter)
+    best = []
+    for row, top in enumerate(values.argmax(axis=1)):
+        fine = np.linspace(way[max(top - 1, 0)], way[min(top + 1, way.size - 1)], 201)
+        heights = curve(fine)[row]
+        best.append((heights.max(), along(fine[heights.argmax()])))
+    return np.array(best).T
+
+
+def onset(build: Callable[[float], Model], low: float, high: float) -> float:
+    """The stiffness difference [Nm/rad] between two others below which no third-order motion doubles its period."""
+
+    def margin(difference: float) -> float:
+        model = build(difference)
+
+        def least(speed: float) -> float:
+            explorer = over_torque(model, speed, TORQUES, depth=0, highest_order=HIGHEST_ORDER)
+            lowest = [-crests(b, -doubling_margin(b)[None])[0, 0] for b in explorer.branches]
+            return float(min(lowest))
+
+        look = [least(float(speed)) for speed in FIRST_LOOK]
+        best = int(np.argmin(look))
+        ends = FIRST_LOOK[max(best - 1, 0)], FIRST_LOOK[min(best + 1, FIRST_LOOK.size - 1)]
+        found = minimize_scalar(least, bounds=ends, method="bounded", options={"xatol": NEAR})
+        return min(float(found.fun), look[best])
+
+    return float(brentq(margin, low, high, xtol=50.0))

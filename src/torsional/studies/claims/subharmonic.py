@@ -1,0 +1,226 @@
+"""Claims about period doubling of a dual mass flywheel with a stiffness step (B1 to B4)."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.powertrain import Powertrain
+from torsional.solvers.modal import natural_frequencies
+from torsional.solvers.periodic.branches import Branch
+from torsional.studies.claims.answers import curves, floats, input_shaft, main_order, mode_of, modes, sweep
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.motions import (
+    INPUT_ACCELERATION,
+    SHAFT,
+    SPRING,
+    TWIST,
+    amplitudes,
+    at_value,
+    doubled,
+    in_time,
+    over_speed,
+    over_torque,
+    rest_of,
+    twist_orders,
+)
+from torsional.studies.claims.stiffness_step import LIGHT, SOFT, Case, cases, stages, stepped, table, transition_torque
+from torsional.studies.claims.strongest import TORQUES, Peak, Search, onset
+from torsional.studies.claims.trucks import Trucks, reached, sprung, within
+from torsional.system import assemble
+
+NAMES = {SPRING: "DMF torque", SHAFT: "input torque", INPUT_ACCELERATION: "input acceleration", TWIST: "DMF twist"}
+UNITS = {SPRING: "Nm", SHAFT: "Nm", INPUT_ACCELERATION: "rad/s²", TWIST: "rad"}
+KINDS = {SPRING: "torque", SHAFT: "torque", INPUT_ACCELERATION: "acceleration", TWIST: "relative_angle"}
+JUDGED = (SPRING, SHAFT)
+CONDITION = (
+    "two-stage DMF, transition 1000 Nm, top gear; order 1.5, 0-peak, each the largest over speed and mean torque; "
+    "k2 varied at k1 = 8 kNm/rad, k1 at k2 = 24 kNm/rad"
+)
+SETTLING = 400
+"""Periods of the firing in which a motion in time settles."""
+SATURATES = "torques grow almost in proportion, while the twist grows less and less as the second stage gets stiffer"
+BELOW = (
+    "at {damping:g} Nms/rad the strongest motions for small differences lie near {speed:.0f} rpm, where order 1.5 "
+    "meets a natural frequency of the line behind the clutch hub, which takes hardly any torque there: the largest "
+    "{quantities} occurs elsewhere, below the transition"
+)
+ASKED = (900.0, 1000.0, 1100.0, 1200.0, 1300.0, 1400.0, 1500.0)
+
+
+def straightness(x: Array, y: Array) -> float:
+    """R² of a straight line through points.
+
+    >>> straightness(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
+    1.0
+    """
+    return float(np.corrcoef(x, y)[0, 1] ** 2)
+
+
+@claim(
+    "B1",
+    "6.1",
+    "With a stiffness step, vibration of order 1.5 occurs where the third order is near twice the frequency of the DMF "
+    "mode, at low operating speeds.",
+    "continuation from the third-order motion finds a branch of twice the period; its speeds lie in the lower half of "
+    "the range, between twice the mode's order speeds in the soft and in the stiff stage; a run in time from rest has "
+    "its amplitude within 2 %",
+)
+def b1(trucks: Trucks) -> Finding:
+    model = trucks.two_stage
+    at = {torque: doubled(over_speed(model, model.operation.speed, torque))[:1] for torque in ASKED}
+    ends = {torque: (branch.values.min(), branch.values.max()) for torque, found in at.items() for branch in found}
+    spring, order = model.landmarks.springs[0], main_order(model)
+    twice = [2 * _mode_speed(sprung(model, spring, k)) for k in stages(model)]
+    strongest = Search(model, order / 2).peak(SPRING)
+    balanced, timed = confirmed(model, strongest)
+    figures: dict[str, Figure] = {
+        "mean torques with a doubled branch [Nm]": tuple(ends),
+        "its speeds [rpm]": tuple(f"{low / RPM:.0f}–{high / RPM:.0f}" for low, high in ends.values()),
+        "twice the DMF mode's order speed, soft and stiff [rpm]": floats(np.array(twice) / RPM),
+        "strongest at [rpm]": strongest.speed / RPM,
+        "strongest at [Nm]": strongest.torque,
+        "DMF torque there [Nm]": strongest.amplitude,
+        "DMF twist there, balance [rad]": balanced,
+        "DMF twist there, in time from rest [rad]": timed,
+    }
+    low, high = model.operation.speed
+    speeds = np.array(list(ends.values()))
+    good = bool(ends) and twice[0] < speeds.min() and speeds.max() < min(twice[1], 0.5 * (low + high))
+    data = _drawn(model, at[1200.0][0], order / 2) if at[1200.0] else None
+    condition = "two-stage DMF as shipped, top gear; order 1.5, 0-peak"
+    return Finding(bool(good and abs(timed / balanced - 1) < 0.02), condition, figures, dataset=data)
+
+
+def _mode_speed(model: Model) -> float:
+    """Order speed [rad/s] of the mode that lives in the springs of the DMF."""
+    found = modes(model)
+    return float(found.order_speed[mode_of(found, *model.landmarks.springs)])
+
+
+def confirmed(model: Model, peak: Peak) -> tuple[float, float]:
+    """DMF twist of half the firing order [rad] at a peak: by harmonic balance, and in time from rest."""
+    explorer = over_torque(model, peak.speed, TORQUES)
+    branch = doubled(explorer)[0]
+    z = max(at_value(branch, peak.torque), key=lambda point: abs(branch.problem.harmonics_of(point)[0, 1]))
+    timed = in_time(explorer, peak.torque)
+    start = rest_of(explorer.branches[0].problem, at_value(explorer.branches[0], peak.torque)[0], timed)
+    end = timed.flow(start, SETTLING).state
+    return float(abs(branch.problem.harmonics_of(z)[0, 1])), float(twist_orders(timed, end, 2)[1])
+
+
+def quiet_speed(model: Model) -> float:
+    """Speed [rad/s] at which half the firing order meets the line behind the clutch hub, free at its front end."""
+    parts = {**model.components, **model.gears[model.top_gear].components}
+    whole = model.replaced(components=parts, gears={}, document={})
+    nodes = reached(whole.powertrain(), [model.landmarks.input], [input_shaft(model)])
+    omega = natural_frequencies(assemble(Powertrain(within(whole, nodes))))
+    speed = omega / (0.5 * main_order(model))
+    return float(speed[speed > model.operation.idle].min())
+
+
+def _drawn(model: Model, branch: Branch, order: float) -> xr.Dataset:
+    values = amplitudes(model, branch, order)
+    return curves("B1", branch.values, "torque", dmf_torque=values[SPRING], input_torque=values[SHAFT])
+
+
+@claim(
+    "B2",
+    "6.1",
+    "The largest vibration of order 1.5 is almost linear in the difference of the two stiffnesses.",
+    "torque in the DMF and torque at the gearbox input over at least six differences above the onset: R² above 0.97, "
+    "k2 varied and k1 varied; acceleration, twist, a second damping and the onset reported",
+)
+def b2(trucks: Trucks) -> Finding:
+    found = cases(trucks.two_stage)
+    figures: dict[str, Figure] = {}
+    for name in ("k2", "k1"):
+        differences, sizes, _ = table(found[name])
+        figures[f"{name} varied: differences [kNm/rad]"] = floats(differences / 1e3)
+        for quantity, told in NAMES.items():
+            figures[f"{name} varied: {told} [{UNITS[quantity]}]"] = floats(sizes[:, quantity])
+            figures[f"{name} varied: {told}, R²"] = straightness(differences, sizes[:, quantity])
+    figures |= _lightly(found["light"]) | _onsets(trucks.two_stage)
+    figures["largest twist over the stop's [-]"] = max(one.travel for one in (*found["k2"], *found["k1"]))
+    straight = [straightness(x, y[:, q]) for x, y, _ in (table(found[n]) for n in ("k2", "k1")) for q in JUDGED]
+    return Finding(min(straight) > 0.97, CONDITION, figures, SATURATES, _swept("B2", found["k2"], 1))
+
+
+def _lightly(found: tuple[Case, ...]) -> dict[str, Figure]:
+    differences, sizes, _ = table(found)
+    told: dict[str, Figure] = {f"{LIGHT:g} Nms/rad, k2 varied: differences [kNm/rad]": floats(differences / 1e3)}
+    for quantity, name in NAMES.items():
+        told[f"{LIGHT:g} Nms/rad: {name} [{UNITS[quantity]}]"] = floats(sizes[:, quantity])
+        told[f"{LIGHT:g} Nms/rad: {name}, R²"] = straightness(differences, sizes[:, quantity])
+    return told
+
+
+def _onsets(model: Model) -> dict[str, Figure]:
+    def built(difference: float, damping: float | None) -> Model:
+        return stepped(model, SOFT, SOFT + difference, damping)
+
+    return {
+        "onset, shipped damping [kNm/rad]": onset(partial(built, damping=None), 2e3, 14e3) / 1e3,
+        f"onset, {LIGHT:g} Nms/rad [kNm/rad]": onset(partial(built, damping=LIGHT), 1e3, 8e3) / 1e3,
+    }
+
+
+def _swept(id: str, found: tuple[Case, ...], which: int) -> xr.Dataset:
+    """Amplitudes (1) or their mean torques (2) of `table` over the difference."""
+    told = table(found)
+    values = {
+        name.lower().replace(" ", "_"): (told[which][:, q], KINDS[q] if which == 1 else "torque")
+        for q, name in NAMES.items()
+    }
+    return sweep(id, "difference", told[0], "stiffness", **values)
+
+
+@claim(
+    "B3",
+    "6.1",
+    "The mean torque of the largest vibration of order 1.5 lies above the transition between the stages.",
+    "strictly above in every case of B2 at the shipped damping, for all quantities; the second damping reported",
+)
+def b3(trucks: Trucks) -> Finding:
+    found = cases(trucks.two_stage)
+    transition = transition_torque(trucks.two_stage)
+    lowest = {name: table(found[name])[2].min(axis=0) for name in found}
+    figures: dict[str, Figure] = {"transition torque [Nm]": transition}
+    for name, told in (("k2", "k2 varied"), ("k1", "k1 varied"), ("light", f"{LIGHT:g} Nms/rad, k2 varied")):
+        figures |= {f"{told}: lowest for the {NAMES[q]} [Nm]": float(lowest[name][q]) for q in NAMES}
+    good = bool(np.concatenate([lowest["k2"], lowest["k1"]]).min() > transition)
+    below = [NAMES[q] for q in NAMES if lowest["light"][q] <= transition]
+    reason = (
+        BELOW.format(damping=LIGHT, quantities=" and ".join(below), speed=quiet_speed(trucks.two_stage) / RPM)
+        if below
+        else ""
+    )
+    return Finding(good, CONDITION, figures, reason)
+
+
+@claim(
+    "B4",
+    "6.1",
+    "That mean torque varies almost linearly with the difference of the stiffnesses.",
+    "R² above 0.95, k2 varied and k1 varied, the largest torque in the DMF located along branches to about 2 Nm",
+)
+def b4(trucks: Trucks) -> Finding:
+    found = cases(trucks.two_stage)
+    figures: dict[str, Figure] = {}
+    straight = []
+    for name in ("k2", "k1"):
+        differences, _, torques = table(found[name])
+        slope = np.polyfit(differences / 1e3, torques[:, SPRING], 1)[0]
+        figures[f"{name} varied: differences [kNm/rad]"] = floats(differences / 1e3)
+        figures[f"{name} varied: mean torque [Nm]"] = floats(torques[:, SPRING])
+        figures[f"{name} varied: slope [Nm per kNm/rad]"] = float(slope)
+        figures |= {f"{name} varied: R² for the {NAMES[q]}": straightness(differences, torques[:, q]) for q in NAMES}
+        straight.append(straightness(differences, torques[:, SPRING]))
+    light = table(found["light"])
+    figures[f"{LIGHT:g} Nms/rad, k2 varied: mean torque [Nm]"] = floats(light[2][:, SPRING])
+    figures[f"{LIGHT:g} Nms/rad, k2 varied: R²"] = straightness(light[0], light[2][:, SPRING])
+    return Finding(min(straight) > 0.95, CONDITION, figures, dataset=_swept("B4", found["k2"], 2))
