@@ -17,6 +17,7 @@ from torsional.components import Component, Coupling, GearPair, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.laws import Hinges, Law, Polynomial
 from torsional.powertrain import Powertrain
+from torsional.solvers.periodic import periodic_response
 from torsional.system import System, assemble
 
 NodeTorques = Mapping[str, Mapping[float, complex]]
@@ -297,3 +298,25 @@ def geared(mean: float = 400.0, third: float = 900.0) -> Machine:
 def rpm(speed: float) -> float:
     """Speed [rad/s] of revolutions per minute."""
     return speed * RPM
+
+
+# --- answers of the package ---
+
+
+def respond(machine: Machine, span: tuple[float, float], **changed: object) -> xr.Dataset:
+    """`periodic_response` of a machine."""
+    return periodic_response(machine.system, machine.excitation, span, hold=machine.hold, **changed)  # type: ignore[arg-type]
+
+
+def picked(data: xr.Dataset, value: float, kind: str = "") -> xr.Dataset:
+    """The points at one value of the parameter, on branches of one kind."""
+    at = np.abs(data.value.values - value) <= 1e-12 * abs(value)
+    if kind:
+        at &= (data.kind.values == kind)[data.branch.values]
+    return data.isel(point=np.flatnonzero(at))
+
+
+def bifurcations(data: xr.Dataset, name: str, branch: int = 0) -> np.ndarray:
+    """Values of the parameter at the bifurcations of one type on a branch, ascending."""
+    chosen = (data.bifurcation_type.values == name) & (data.on_branch.values == branch)
+    return np.sort(data.bifurcation_value.values[chosen])
