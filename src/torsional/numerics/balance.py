@@ -35,12 +35,12 @@ def equations(
     g[0] = balance.static
     harmonic_parts(balance, p, speed, g, dg, b, db)
     force, own = np.empty((m, count), dtype=np.complex128), np.empty((m, count, 2 * count - 1), dtype=np.complex128)
-    found = np.empty((0, 3))
+    drift, found = np.zeros((m, count), dtype=np.complex128), np.empty((0, 3))
     for e in range(m):
-        force_harmonics(balance, e, z, speed, force[e], own[e], spectra[e, 0], spectra[e, 1], found)
+        force_harmonics(balance, e, z, speed, force[e], own[e], spectra[e, 0], spectra[e, 1], drift[e], found)
     by_speed = balance.by_speed * balance.base_order
     _less_reference(balance.reference_stiffness, balance.reference_damping, z, balance.base_order * speed, force, own)
-    _values(balance.reference_damping, by_speed, z, g, dg, b, db, force, residual, slope)
+    _values(balance.reference_damping, by_speed, z, g, dg, b, db, force, drift, residual, slope)
     _slopes(g, own, jacobian)
 
 
@@ -75,6 +75,7 @@ def _values(
     b: ComplexArray,
     db: ComplexArray,
     force: ComplexArray,
+    drift: ComplexArray,
     residual: Array,
     slope: Array,
 ) -> None:
@@ -87,7 +88,7 @@ def _values(
             total, rise = x - b[h, e], -db[h, e]
             for f in range(m):
                 total += g[h, e, f] * force[f, h]
-                rise += dg[h, e, f] * force[f, h]
+                rise += dg[h, e, f] * force[f, h] + g[h, e, f] * by_speed * drift[f, h]
                 if h > 0:
                     at = m * (2 * h - 1) + f
                     rise -= g[h, e, f] * complex(0.0, h * by_speed * damping[f]) * complex(z[at], z[at + m])
@@ -188,7 +189,10 @@ def half_order_block(balance: Balance, p: float, spectra: ComplexArray) -> Array
     speed = p if balance.by_speed == 1 else balance.fixed_speed
     block = np.zeros((2 * m * count, 2 * m * count))
     g, dg = np.empty((count, m, m), dtype=np.complex128), np.empty((count, m, m), dtype=np.complex128)
-    receptances_at(balance, (np.arange(count) + 0.5) * balance.base_order, speed, g, dg)
+    orders = np.empty(count)
+    for i in range(count):
+        orders[i] = (i + 0.5) * balance.base_order
+    receptances_at(balance, orders, speed, g, dg)
     for i in range(count):
         for f in range(m):
             reference = balance.reference_damping[f] * balance.base_order * speed

@@ -16,8 +16,8 @@ class Balance(NamedTuple):
     """x_h + G_h F̃_h(x) = b_h over H harmonics of ``base_order`` ν and m connections; n = m (2H + 1) unknowns.
 
     Unknowns: the m means, then for each harmonic the m real and the m imaginary parts, X_h being complex 0-peak.  The
-    continued parameter p is the speed Ω [rad/s] where ``by_speed`` is 1; else Ω is ``fixed_speed``.  The load is a cubic
-    in p between ``breaks``, with coefficients (intervals, 4, …), lowest power first, of p less the break.
+    continued parameter p is the speed Ω [rad/s] where ``by_speed`` is 1; else Ω is ``fixed_speed``.  The load is a
+    cubic in p between ``breaks``, with coefficients (intervals, 4, …), lowest power first, of p less the break.
 
     ``poles`` (2, K) are −Re λ and Im λ, ``left`` (2, m, K) real and imaginary parts of ψ, ``pairs`` (2, m², K) those of
     ψ ψᵀ: G_h = Σ_k ψ_k ψ_kᵀ / (ihνΩ − λ_k), with ``modal_load`` (2, intervals, 4, H + 1, K).  Without poles

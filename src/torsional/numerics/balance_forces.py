@@ -54,9 +54,11 @@ def force_harmonics(
     jacobian: ComplexArray,
     stiffness: ComplexArray,
     rate: ComplexArray,
+    drift: ComplexArray,
     found: Array,
 ) -> int:
-    """Harmonics of the law of connection e (H + 1,), their derivatives (H + 1, 2H + 1), tangent spectra, crossings."""
+    """Harmonics of the law of connection e (H + 1,), their derivatives (H + 1, 2H + 1), tangent spectra, ``drift``
+    (H + 1,) of the harmonics with the pace νΩ, crossings."""
     m, count = balance.reference_stiffness.size, force.size
     x = np.empty(2 * count - 1)
     own_motion(z, e, m, x)
@@ -66,6 +68,7 @@ def force_harmonics(
         offset = np.empty_like(stiffness)
         samples = balance.table @ x
         crossed = hinge_spectrum(law, x, samples, stiffness, offset, found)
+        drift[:] = 0.0
         _toeplitz(stiffness, rate[:0], pace, jacobian)
         for k in range(count):
             total = -offset[k] if k == 0 else -2.0 * offset[k]
@@ -74,10 +77,10 @@ def force_harmonics(
             force[k] = total
         return crossed
     if balance.remembers[e]:
-        remembered_spectrum(balance.address[e], law, x, balance.table, pace, force, jacobian)
+        remembered_spectrum(balance.address[e], law, x, balance.table, pace, force, jacobian, drift)
         stiffness[:], rate[:] = np.nan, np.nan
     else:
-        smooth_spectrum(balance.address[e], law, x, balance.table, pace, force, stiffness, rate)
+        smooth_spectrum(balance.address[e], law, x, balance.table, pace, force, stiffness, rate, drift)
         _toeplitz(stiffness, rate, pace, jacobian)
     return 0
 
@@ -91,10 +94,12 @@ def forces_along(balance: Balance, points: Array, forces: ComplexArray, crossed:
     n = points.shape[1] - 1
     m, count = forces.shape[1:]
     stiffness, rate = np.empty(n // m + 3, dtype=np.complex128), np.empty(n // m + 3, dtype=np.complex128)
-    jacobian = np.empty((count, 2 * count - 1), dtype=np.complex128)
+    jacobian, drift = np.empty((count, 2 * count - 1), dtype=np.complex128), np.empty(count, dtype=np.complex128)
     for i in range(points.shape[0]):
         p = points[i, n] * balance.scale[n]
         speed = p if balance.by_speed == 1 else balance.fixed_speed
         z = points[i, :n] * balance.scale[:n]
         for e in range(m):
-            counts[i, e] = force_harmonics(balance, e, z, speed, forces[i, e], jacobian, stiffness, rate, crossed[i, e])
+            counts[i, e] = force_harmonics(
+                balance, e, z, speed, forces[i, e], jacobian, stiffness, rate, drift, crossed[i, e]
+            )

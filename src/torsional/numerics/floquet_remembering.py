@@ -1,7 +1,7 @@
 """Floquet multipliers where laws remember: deviations of the motion and of the memories marched together.
 
-Over a step a law's torque is a ramp between its ends and the linear part moves exactly; the law gives the derivatives of
-its torque and of its new memory by angle, rate (the mean one over the step) and old memory, as in time stepping.
+Over a step a law's torque is a ramp between its ends and the linear part moves exactly; the law gives the derivatives
+of its torque and of its new memory by angle, rate (the mean one over the step) and old memory, as in time stepping.
 """
 # mypy: disable-error-code="untyped-decorator"
 
@@ -30,54 +30,66 @@ def _derivatives(address: int, law: Array, angles: Array, rates: Array, step: fl
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _march(
-    matrix: Array, push: Array, angle: Array, reference: Array, told: Array, remembers: IntArray, step: float
-) -> Array:
-    """Monodromy matrix of (state, memories); ``told`` (m, samples, 6); ``reference`` (m, 2) stiffness and damping."""
-    n, m = matrix.shape[0], push.shape[1]
+def _steps(matrix: Array, push: Array, step: float) -> tuple[Array, Array, Array]:
+    """Over one step: flow of the state (n, n), responses (n, m) to torques that end at one, and that begin at one."""
+    n, m = push.shape
     wide = np.zeros((n + 2 * m, n + 2 * m))
     wide[:n, :n], wide[:n, n : n + m] = matrix * step, push * step
     for e in range(m):
         wide[n + e, n + m + e] = 1.0
     grown = exponential(wide)
     flow, ramp = np.ascontiguousarray(grown[:n, :n]), np.ascontiguousarray(grown[:n, n + m :])
-    hold = np.ascontiguousarray(grown[:n, n : n + m]) - ramp
-    seen = np.ascontiguousarray(angle @ ramp)
-    rate_rows = np.ascontiguousarray(push.T)
-    z = np.eye(n + m)[:n].copy()
-    memory = np.zeros((m, n + m))
+    return flow, ramp, np.ascontiguousarray(grown[:n, n : n + m]) - ramp
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _torques(
+    told: Array, remembers: IntArray, first: bool, seen: Array, before: Array, now: Array, memory: Array, step: float
+) -> Array:
+    """Deviations (m, columns) of the torques, less the reference's; ``seen`` (2, m, m): what they do to angle, rate.
+
+    ``told`` (m, 6) derivatives, the reference taken off the first two; ``now`` (2, m, columns): angles and rates
+    without the torques that are looked for.  At the ``first`` sample angle and memory alone tell the torque.
+    """
+    m = told.shape[0]
+    system, right = np.eye(m), np.empty_like(memory)
     for e in range(m):
-        memory[e, n + e] = 1.0
-    g = np.zeros((m, n + m))
-    for i in range(told.shape[1] + 1):
-        here = i % told.shape[1]
-        before = angle @ z
+        d, own = told[e], remembers[e] == 1
+        pace = d[1] / step if own and not first else 0.0
+        drag = 0.0 if own else d[1]
+        right[e] = -(d[0] + pace) * now[0, e] + pace * before[e] - drag * now[1, e] - d[2] * memory[e]
+        for f in range(m):
+            if not first:
+                system[e, f] += (d[0] + pace) * seen[0, e, f] + drag * seen[1, e, f]
+    answer: Array = np.ascontiguousarray(np.linalg.solve(system, right))
+    return answer
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _march(matrix: Array, push: Array, angle: Array, told: Array, remembers: IntArray, step: float) -> Array:
+    """Monodromy matrix of (state, memories); ``told`` (samples, m, 6), the reference stiffness taken off."""
+    n, m = push.shape
+    flow, ramp, hold = _steps(matrix, push, step)
+    rate_rows = np.ascontiguousarray(push.T)
+    seen, now = np.empty((2, m, m)), np.empty((2, m, n + m))
+    seen[0], seen[1] = angle @ ramp, rate_rows @ ramp
+    whole = np.eye(n + m)
+    z, memory = whole[:n].copy(), whole[n:].copy()
+    g, before = np.zeros((m, n + m)), angle @ z
+    for i in range(told.shape[0] + 1):
+        d = told[i % told.shape[0]]
         if i > 0:
             z = flow @ z + hold @ g
-        now, rate = angle @ z, rate_rows @ z
-        system, right = np.eye(m), np.zeros((m, n + m))
-        for e in range(m):
-            d = told[e, here]
-            pace = d[1] / step if remembers[e] else 0.0
-            if i == 0:
-                right[e] = (reference[e, 0] - d[0]) * now[e] + (reference[e, 1] - d[1] * (1 - remembers[e])) * rate[e]
-                right[e] -= d[2] * memory[e]
-                continue
-            by_angle = d[0] - reference[e, 0] + pace
-            right[e] = -by_angle * now[e] + pace * before[e] - d[2] * memory[e]
-            right[e] += (reference[e, 1] - d[1] * (1 - remembers[e])) * rate[e]
-            for f in range(m):
-                system[e, f] += by_angle * seen[e, f]
-        g = np.linalg.solve(system, right)
+        now[0], now[1] = angle @ z, rate_rows @ z
+        g = _torques(d, remembers, i == 0, seen, before, now, memory, step)
         if i > 0:
             z = z + ramp @ g
-            now = angle @ z
+            after = angle @ z
             for e in range(m):
-                d = told[e, here]
-                memory[e] = d[3] * now[e] + d[4] * (now[e] - before[e]) / step + d[5] * memory[e]
-    out = np.empty((n + m, n + m))
-    out[:n], out[n:] = z, memory
-    return out
+                memory[e] = d[e, 3] * after[e] + d[e, 4] * (after[e] - before[e]) / step + d[e, 5] * memory[e]
+            before = after
+    whole[:n], whole[n:] = z, memory
+    return whole
 
 
 def monodromy_remembering(
@@ -91,9 +103,9 @@ def monodromy_remembering(
 ) -> Array:
     """Monodromy matrix (states + remembering laws, same) over one ``period`` [s] of a motion.
 
-    ``linear``: `coordinates` with ``reference`` (m, 2) stiffness [Nm/rad] and damping [Nms/rad] of each connection in K
-    and C; ``laws``: address of the kernel and parameters of each; ``remembers`` (m,) 0 or 1; ``angles``, ``rates`` (m,
-    samples) of the motion.  The error falls with the square of the samples for smooth laws.
+    ``linear``: `coordinates` with the ``reference`` stiffness (m,) [Nm/rad] of each connection in K; ``laws``: address
+    of the kernel and parameters of each; ``remembers`` (m,) 0 or 1; ``angles``, ``rates`` (m, samples) of the motion.  The
+    error falls with the square of the samples for smooth laws.
     """
     samples = angles.shape[1]
     step = period / samples
@@ -103,14 +115,9 @@ def monodromy_remembering(
         mean_rates = (angles[e] - np.roll(angles[e], 1)) / step
         given = np.ascontiguousarray(mean_rates if flags[e] else rates[e])
         _derivatives(address, np.ascontiguousarray(law), np.ascontiguousarray(angles[e]), given, step, told[e])
-    whole = _march(
-        linear.matrix,
-        np.ascontiguousarray(linear.rate_rows.T),
-        linear.angle_rows,
-        np.asarray(reference, dtype=float),
-        told,
-        flags,
-        step,
-    )
+    told[:, :, 0] -= np.asarray(reference, dtype=float)[:, None]
+    by_sample = np.ascontiguousarray(np.moveaxis(told, 0, 1))
+    push = np.ascontiguousarray(linear.rate_rows.T)
+    whole = _march(linear.matrix, push, linear.angle_rows, by_sample, flags, step)
     kept = np.concatenate([np.arange(linear.size), linear.size + np.flatnonzero(flags)])
     return np.asarray(whole[np.ix_(kept, kept)])

@@ -2,10 +2,11 @@
 
     x(τ) = x_0 + Re Σ_h X_h exp(ihτ),   f(x) = k0 x + Σ_i s_i Δk_i max(0, s_i (x − g_i))
 
-While hinge i is engaged it adds Δk_i (x − g_i).  With the spectra I_j of the engaged times, closed forms of the crossing
-angles, the tangent stiffness has the two-sided spectrum S_j = k0 δ_j + Σ_i Δk_i I_j and the force is the convolution of S
-with x less that of the offsets O_j = Σ_i Δk_i g_i I_j.  The Jacobian by the harmonics is the same convolution, since the
-force is continuous at a crossing.  Samples serve only to find the crossings, whose places are polished by Newton's method.
+While hinge i is engaged it adds Δk_i (x − g_i).  With the spectra I_j of the engaged times, closed forms of the
+crossing angles, the tangent stiffness has the two-sided spectrum S_j = k0 δ_j + Σ_i Δk_i I_j, and the force is the
+convolution of S with x less that of the offsets O_j = Σ_i Δk_i g_i I_j.  The Jacobian by the harmonics is the same
+convolution, since the force is continuous at a crossing.  Samples serve only to find the crossings, whose places are
+polished by Newton's method.
 """
 # mypy: disable-error-code="untyped-decorator"
 
@@ -23,10 +24,10 @@ CLOSE = 1e-9
 def scan_table(harmonics: int, samples: int = 0) -> Array:
     """Table (samples, 1 + 2 harmonics) of 1, cos hτ, −sin hτ: times (x_0, Re X_1, Im X_1, …) it samples a motion.
 
-    The default takes four samples a period of the highest harmonic, at least 64: a sum of harmonics has no more than
+    The default takes eight samples a period of the highest harmonic, at least 64: a sum of harmonics has no more than
     two extrema a period of its highest one, and extrema between samples are looked for beside.
     """
-    wanted = samples or max(64, 4 * harmonics)
+    wanted = samples or max(64, 8 * harmonics)
     angle = TWO_PI * np.arange(wanted) / wanted
     columns = [np.ones(wanted)]
     for h in range(1, harmonics + 1):
@@ -141,8 +142,8 @@ def hinge_spectrum(
 ) -> int:
     """Fill the spectra S_j of the ``stiffness`` and O_j of the ``offset``, j ≥ 0, of a law along a motion.
 
-    ``law``: k0, then (g, s, Δk) of each hinge; ``x``: x_0, Re X_1, Im X_1, …; ``samples``: the motion on an even grid of
-    τ.  ``found`` (places, 3) takes the crossings as (τ, hinge, rising); their number is returned.
+    ``law``: k0, then (g, s, Δk) of each hinge; ``x``: x_0, Re X_1, Im X_1, …; ``samples``: the motion on an even grid
+    of τ.  ``found`` (places, 3) takes the crossings as (τ, hinge, rising); their number is returned.
     """
     stiffness[:] = 0.0
     offset[:] = 0.0
@@ -155,9 +156,13 @@ def hinge_spectrum(
         count = 0
         if low - slack < gap < high + slack:
             count = crossings(x, samples, gap, places, rising)
-        share = 1.0 if count == 0 and side * (samples[0] - gap) > 0.0 else 0.0
-        if count:
-            share = _engaged(places, rising, count, side, change, gap, stiffness, offset)
+        share = 0.0
+        for sample in samples:
+            share += side * (sample - gap) > 0.0
+        share /= samples.size
+        if count:  # exact but for whole turns, which the samples tell
+            exact = _engaged(places, rising, count, side, change, gap, stiffness, offset)
+            share = exact + np.round(share - exact)
         for c in range(count):
             if total < found.shape[0]:
                 found[total, 0], found[total, 1], found[total, 2] = places[c] % TWO_PI, i // 3, rising[c]
@@ -178,7 +183,7 @@ def _engaged(
     stiffness: ComplexArray,
     offset: ComplexArray,
 ) -> float:
-    """Add the spectrum of the engaged arcs of one hinge, j ≥ 1, and return the share of the period they take."""
+    """Add the spectrum of the engaged arcs of a hinge, j ≥ 1; the share of the period they take, but for whole ones."""
     share = 0.0
     for c in range(count):
         leaving = -1.0 if (rising[c] > 0.5) == (side > 0.0) else 1.0
@@ -190,4 +195,4 @@ def _engaged(
             term = leaving * change / (TWO_PI * j) * complex(-phasor.imag, phasor.real)
             stiffness[j] += term
             offset[j] += gap * term
-    return share - np.floor(share) if count % 2 == 0 else share
+    return share

@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import solve_triangular
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
@@ -121,7 +120,7 @@ def coordinates(
     except np.linalg.LinAlgError:
         raise ModelError("the mass matrix must be positive definite", remedy="condense massless nodes first") from None
     vectors = _checked_rigid(rigid, K, W)
-    free, damped, others = (solve_triangular(root, b, lower=True, trans=1) for b in _split_rigid(root, vectors, C))
+    free, damped, others = (np.asarray(np.linalg.solve(root.T, b), dtype=float) for b in _split_rigid(root, vectors, C))
     squares, modes = np.linalg.eigh(others.T @ K @ others)
     shapes, scale = others @ modes, _scale(squares)
     moving, count = np.hstack([shapes, damped]), len(scale)

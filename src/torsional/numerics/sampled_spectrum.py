@@ -14,6 +14,9 @@ import numpy as np
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.callbacks import law_at
 
+NUDGE = 1e-6
+"""Share by which the pace is changed to see what that does to a law with memory."""
+
 
 @numba.njit(cache=True, error_model="numpy")
 def _rates(x: Array, pace: float) -> Array:
@@ -49,8 +52,10 @@ def smooth_spectrum(
     force: ComplexArray,
     stiffness: ComplexArray,
     rate: ComplexArray,
+    drift: ComplexArray,
 ) -> None:
-    """Force harmonics (complex 0-peak) of a law without memory, and the two-sided spectra of its tangents."""
+    """Force harmonics (complex 0-peak) of a law without memory, the two-sided spectra of its tangents, and the
+    ``drift`` of the force harmonics with the pace."""
     torque = law_at(address)
     angles, rates = table @ x, table @ _rates(x, pace)
     forces, tangents, dashes = np.empty_like(angles), np.empty_like(angles), np.empty_like(angles)
@@ -61,16 +66,33 @@ def smooth_spectrum(
     force[1:] *= 2.0
     _spectrum(tangents, stiffness)
     _spectrum(dashes, rate)
+    for i in range(angles.size):
+        dashes[i] *= rates[i] / pace
+    _spectrum(dashes, drift)
+    drift[1:] *= 2.0
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def remembered_spectrum(
-    address: int, law: Array, x: Array, table: Array, pace: float, force: ComplexArray, jacobian: ComplexArray
+    address: int,
+    law: Array,
+    x: Array,
+    table: Array,
+    pace: float,
+    force: ComplexArray,
+    jacobian: ComplexArray,
+    drift: ComplexArray,
 ) -> None:
-    """Force harmonics of a law with memory and their derivatives by x_0, Re X_1, Im X_1, …"""
+    """Force harmonics of a law with memory, their derivatives by x_0, Re X_1, Im X_1, …, their drift with the pace."""
     size, n = table.shape
     forces, slopes = np.empty(size), np.empty((size, n))
-    marched(address, law, table @ x, table, 2.0 * np.pi / (pace * size), forces, slopes)
+    angles, step = table @ x, 2.0 * np.pi / (pace * size)
+    later, sooner = np.empty(size), np.empty(size)
+    marched(address, law, angles, table[:, :0], step / (1.0 + NUDGE), later, slopes[:, :0])
+    marched(address, law, angles, table[:, :0], step / (1.0 - NUDGE), sooner, slopes[:, :0])
+    _spectrum((later - sooner) / (2.0 * NUDGE * pace), drift)
+    drift[1:] *= 2.0
+    marched(address, law, angles, table, step, forces, slopes)
     for k in range(force.size):
         scale = (1.0 if k == 0 else 2.0) / size
         force[k] = 0.0

@@ -1,4 +1,4 @@
-"""Dense linear equations of a few dozen unknowns inside compiled code, where a call to LAPACK costs more than the work."""
+"""Dense linear equations of a few dozen unknowns in compiled code, where a call to LAPACK costs more than the work."""
 # mypy: disable-error-code="untyped-decorator"
 
 from __future__ import annotations

@@ -105,7 +105,7 @@ def settled(system: System, load: Array) -> Array:
 
     Raises ModelError where no spring can carry them.
     """
-    return _settled(system, _without_friction(system), load[None], "")[1][0]
+    return np.asarray(_settled(system, _without_friction(system), load[None], "")[1][0])
 
 
 def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) -> OperatingPoint:

@@ -44,7 +44,7 @@ def subharmonic_boundary(
     """Where vibration at half the engine's order begins and ends over ``speed`` [rad/s] and a second quantity.
 
     ``along`` is "torque" [Nm], or a path of the model file such as ``absorber.stages.1.stiffness`` at one mean
-    ``torque`` [Nm]; ``span`` its range in SI units, in which branches are followed at some ``places`` to find the curves.
+    ``torque`` [Nm]; ``span`` its range in SI units, at ``places`` of which branches are followed to find the curves.
     Dimension ``boundary_point``: ``boundary_speed``, ``boundary_value``, ``boundary_kind`` (period doubling of the main
     branch, fold of a doubled one) and ``boundary_curve``.  Raises ModelError as `model_response` does.
     """
@@ -106,7 +106,7 @@ def curve_variables(curves: Sequence[tuple[str, Array]], second: str, quantity: 
 def region_curves(
     edges: Sequence[tuple[float, Explorer]], family: Family, span: tuple[float, float]
 ) -> list[tuple[str, Array]]:
-    """Curves (speed, second quantity) of period doublings of the main branches and folds of the doubled ones, each once.
+    """Curves (speed, second quantity), each once: period doublings of main branches, folds of the doubled ones.
 
     ``edges``: explored branches at rising values of the second quantity.
     """

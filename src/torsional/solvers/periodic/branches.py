@@ -21,8 +21,8 @@ DEPARTED = "departed"
 NOT_BIFURCATIONS = ("", JOINED, DEPARTED)
 DEPARTURES = (0.02, 0.005, 0.001, 1e-4, 0.08)
 """First steps onto a branch that leaves another, in scaled angles, in the order in which they are tried."""
-NEAR = 1e-4
-"""Scaled distance from where two branches meet within which a bifurcation is that meeting."""
+NEAR = {"fold": 1e-4, "branch point": 5e-3}
+"""Scaled distance from where two branches meet within which a fold is the tip, a branch point the meeting itself."""
 ALIKE, NEAREST = 1e-5, 3
 """Scaled distance below which two points are the same; how many chords of a branch are tried."""
 
@@ -52,7 +52,8 @@ class Branch:
     def _leaving(self, point: Point) -> bool:
         """Whether a point is where this branch meets the one it leaves: what is found there belongs to that one."""
         joints = (joint.z for joint in self.points if joint.event in (JOINED, DEPARTED))
-        return any(float(np.abs(point.z - z).max()) < NEAR for z in joints)
+        near = NEAR.get(point.event, 0.0)
+        return any(float(np.abs(point.z - z).max()) < near for z in joints)
 
     @cached_property
     def multipliers(self) -> ComplexArray:
@@ -140,7 +141,14 @@ class Explorer:
 
     def known(self, problem: HarmonicProblem, z: Array) -> bool:
         """Whether a scaled solution lies on a known branch, be it moved by periods of the excitation or mirrored."""
-        return any(_passes(branch, problem, z) for branch in self.branches)
+        if any(_passes(branch, problem, z) for branch in self.branches):
+            return True
+        odd = z[WatchedProblem.of_odd(problem).watched]
+        if 2 * problem.base_order > self.base_order or np.abs(odd).max(initial=0.0) > ALIKE:
+            return False
+        wider = self.problem(2 * problem.base_order)
+        harmonics = problem.harmonics_of(z)[:, ::2]
+        return self.known(wider, wider.point_of(harmonics, float(z[-1] * problem.scale[-1])))
 
     def _generation(self, number: int) -> int:
         count = 0
@@ -233,7 +241,9 @@ class Explorer:
             return
         branch = Branch(kind, problem, trace.points, started, ended, parent)
         if self.stability:
-            branch = replace(branch, points=with_hidden_events(problem, trace.points, branch.multipliers))
+            points = with_hidden_events(problem, trace.points, branch.multipliers)
+            if len(points) > len(trace.points):
+                branch = replace(branch, points=points)
         self.branches.append(branch)
 
 

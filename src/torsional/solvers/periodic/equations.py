@@ -10,7 +10,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.laws import Hinges, Law
-from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.balance_data import Balance
 from torsional.numerics.hinge_spectrum import scan_table
 from torsional.numerics.null_space import null_vectors
@@ -153,7 +153,9 @@ class Split:
 
 
 def _reference(law: Law) -> float:
-    """A stiffness of the law's own size: its softest stage that is not free, or its steepest slope near rest."""
+    """A stiffness of the law's own size: its softest stage that is not free, its slope near rest; none of friction."""
+    if not law.carries_mean_torque:
+        return 0.0
     if isinstance(law, Hinges):
         slopes = law.tangent(law._between())
         return float(slopes[slopes > 0].min(initial=np.inf)) if (slopes > 0).any() else 1.0
@@ -211,18 +213,19 @@ def balance(
     )
 
 
-def packed(laws: Sequence[Law]) -> tuple[Array, Array, Array, Array]:
-    """Parameters of all laws in a row with their starts, addresses of their kernels (0: hinges), whether they remember."""
+def packed(laws: Sequence[Law]) -> tuple[Array, IntArray, IntArray, IntArray]:
+    """Parameters of all laws in a row, where each starts, addresses of kernels (0: hinges), whether they remember."""
     values = [law.parameters for law in laws]
     starts = np.concatenate([[0], np.cumsum([v.size for v in values])])
     address = [0 if isinstance(law, Hinges) else law.address for law in laws]
-    remembers = [int(getattr(law, "remembers", False)) for law in laws]
-    return np.concatenate(values), *(np.asarray(v, dtype=np.int64) for v in (starts, address, remembers))
+    remembers = [int(law.remembers) for law in laws]
+    numbers: list[IntArray] = [np.asarray(v, dtype=np.int64) for v in (starts, address, remembers)]
+    return np.concatenate(values), numbers[0], numbers[1], numbers[2]
 
 
 def _samples(laws: Sequence[Law], harmonics: int) -> int:
     """Samples a period: as few as find the crossings of hinges, many where a law is sampled."""
     if all(isinstance(law, Hinges) for law in laws):
         return 0
-    least = REMEMBERING_SAMPLES if any(getattr(law, "remembers", False) for law in laws) else SMOOTH_SAMPLES
+    least = REMEMBERING_SAMPLES if any(law.remembers for law in laws) else SMOOTH_SAMPLES
     return max(least, 1 << (16 * harmonics - 1).bit_length())

@@ -96,7 +96,7 @@ class Load:
             raise ModelError("nothing but a mean torque acts", where="excitation", remedy="give orders above 0")
         base = 0.0
         for order in self.orders[counts]:
-            base = _common(base, float(order))
+            base = common_order(base, float(order))
         return base
 
     def refuse_others(self, base_order: float) -> None:
@@ -113,7 +113,7 @@ class Load:
             )
 
 
-def _common(a: float, b: float) -> float:
+def common_order(a: float, b: float) -> float:
     """The largest number of which both are whole multiples, by Euclid's algorithm."""
     while b > 1e-6:
         a, b = b, a % b

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 import xarray as xr
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.results import dataset
+from torsional.results import Variable, dataset
 from torsional.solvers.periodic.branches import NOT_BIFURCATIONS, Branch, Explorer
+from torsional.solvers.periodic.load import common_order
 from torsional.solvers.periodic.problem import BoolArray
 from torsional.solvers.periodic.stability import MARGIN
-from torsional.solvers.periodic.states import States, states
+from torsional.solvers.periodic.states import states
 
 QUANTITIES = {"speed": "speed", "mean_torque": "torque"}
 
@@ -22,7 +25,7 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
     found = [states(branch.problem, branch.scaled) for branch in branches]
     system = explorer.setting.split.system
     over = ("point", "order")
-    variables = {
+    variables: dict[str, Variable] = {
         "angle": ((*over, "node"), _laid(branches, [s.angle for s in found], orders), "angle"),
         "twist": ((*over, "element"), _laid(branches, [s.twist for s in found], orders), "relative_angle"),
         "torque": ((*over, "element"), _laid(branches, [s.torque for s in found], orders), "torque"),
@@ -35,7 +38,7 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
     value = np.concatenate([branch.values for branch in branches])
     speed = value if explorer.setting.speed is None else np.full(len(value), explorer.setting.speed)
     return dataset(
-        variables | _tables(branches) | _bifurcations(explorer, branches, found),
+        variables | _tables(branches) | _bifurcations(explorer, branches),
         {
             "order": (orders, "engine_order"),
             "node": (np.array(system.nodes), ""),
@@ -65,8 +68,8 @@ def data_unit(parameter: str) -> str:
 
 def _orders(branches: list[Branch], highest: float) -> Array:
     """All orders up to the highest that some branch has harmonics of."""
-    finest = min(branch.base_order for branch in branches)
-    return finest * np.arange(int(highest / finest + 1e-9) + 1)
+    finest = reduce(common_order, {branch.base_order for branch in branches})
+    return np.asarray(finest * np.arange(int(highest / finest + 1e-9) + 1))
 
 
 def _laid(branches: list[Branch], parts: list[ComplexArray], orders: Array) -> ComplexArray:
@@ -87,7 +90,7 @@ def _mean_torques(explorer: Explorer, value: Array) -> Array:
     return np.array([load.at(float(v))[:, mean].real.sum() for v in value])
 
 
-def _stability(branches: list[Branch]) -> dict[str, tuple[tuple[str, ...], object, str]]:
+def _stability(branches: list[Branch]) -> dict[str, Variable]:
     values = np.concatenate([branch.multipliers for branch in branches])
     return {
         "multiplier": (("point", "multiplier"), values, ""),
@@ -103,12 +106,12 @@ def _events(branch: Branch) -> list[str]:
 
 def _stable(branch: Branch) -> BoolArray:
     """Whether each point is stable; one where a multiplier is on the unit circle goes with a stable neighbour."""
-    inside = ~(np.abs(branch.multipliers) > 1 + MARGIN).any(axis=1)
+    inside = np.asarray((np.abs(branch.multipliers) <= 1 + MARGIN).all(axis=1))
     beside = np.append(inside[1:], False) | np.append(False, inside[:-1])
-    return np.where([bool(point.event) for point in branch.points], beside | inside, inside)
+    return np.asarray(np.where([bool(point.event) for point in branch.points], beside | inside, inside))
 
 
-def _tables(branches: list[Branch]) -> dict[str, tuple[tuple[str, ...], object, str]]:
+def _tables(branches: list[Branch]) -> dict[str, Variable]:
     rows = ("branches",)
     return {
         "kind": (rows, np.array([b.kind for b in branches]), ""),
@@ -119,9 +122,7 @@ def _tables(branches: list[Branch]) -> dict[str, tuple[tuple[str, ...], object, 
     }
 
 
-def _bifurcations(
-    explorer: Explorer, branches: list[Branch], found: list[States]
-) -> dict[str, tuple[tuple[str, ...], object, str]]:
+def _bifurcations(explorer: Explorer, branches: list[Branch]) -> dict[str, Variable]:
     rows = [(number, point) for number, branch in enumerate(branches) for point in branch.events]
     value = np.array([point.parameter for _, point in rows])
     speed = value if explorer.setting.speed is None else np.full(len(value), explorer.setting.speed)

@@ -172,7 +172,7 @@ class HarmonicProblem:
 
 
 class WatchedProblem:
-    """A problem whose ``watched`` unknowns are zero on the branch it leaves: it has come back where they are zero again.
+    """A problem whose ``watched`` unknowns are zero on the branch it leaves: where they are again it has come back.
 
     Beyond that place the same branch would be followed once more, moved in time by a period or mirrored.
     """

@@ -23,6 +23,8 @@ def refined(branch: Branch, values: ArrayLike) -> Branch:
     A value at which the corrector fails, or finds another branch, is left out.
     """
     wanted = np.unique(np.asarray(values, dtype=float))
+    if not wanted.size:
+        return branch
     points = list(branch.points[:1])
     for start, end in pairwise(branch.points):
         points += [*_between(branch, start, end, wanted), end]

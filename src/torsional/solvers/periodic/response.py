@@ -26,7 +26,10 @@ from torsional.solvers.periodic.varied import VariedProblem
 from torsional.system import System
 
 HIGHEST_ORDER = 18.0
-"""Orders of the harmonics of a four-stroke engine that are taken by default; the force of a stage falls with their cube."""
+"""Highest order of the harmonics that are taken by default; those of a stage's torque fall with its cube."""
+
+SIZED = 9
+"""Values of the parameter at which the size of the angles is estimated."""
 
 _LOADS: dict[str, Callable[[Excitation], Load]] = {
     "speed": Load.over_speed,
@@ -64,12 +67,12 @@ def periodic_response(
     settings: Settings = TRACING,
     at: ArrayLike = (),
 ) -> xr.Dataset:
-    """Branches of periodic motion of a ``system`` with laws over a ``span`` of the ``parameter``, nobody's guess needed.
+    """Branches of periodic motion of a ``system`` with laws over a ``span`` of the ``parameter``; no guess is needed.
 
     ``parameter``: "speed" [rad/s], "mean_torque" [Nm] (the sum of the order-0 torques), "amplitude" (a factor on all
     orders above 0) or a `Variation`; all but the first need the ``speed`` [rad/s].  ``excitation``: torque harmonics
     with order 0 as the mean, at one operating point or over speeds; ``hold``: the node that takes up the mean torque.
-    Harmonics go up to ``highest_order``, in multiples of ``base_order`` (default: the largest that fits the excitation).
+    Harmonics go up to ``highest_order``, in multiples of ``base_order`` (default: the largest that fits).
     ``depth``: how many times a branch may leave a branch.  Stability by Floquet multipliers where ``stability``.
     ``at``: values of the parameter at which every branch that passes them gets a point.
     ``isolated``: branches that hang together with none of these are sought as well, by continuation in torque and
@@ -189,7 +192,7 @@ def _refuse_switch(system: System, low: float, high: float, speed: float | None)
 
 def _angle_scale(problem: HarmonicProblem, span: tuple[float, float]) -> Array:
     """Sizes of the angles (m,) to be expected: static twist, linear response, the nearest hinge."""
-    sizes = [np.abs(part) for value in span for part in problem.linear_size(value)]
+    sizes = [np.abs(part) for value in np.linspace(*span, SIZED) for part in problem.linear_size(float(value))]
     sizes.append(np.array([_nearest_hinge(law) for law in problem.setting.split.laws]))
     size = np.max(sizes, axis=0)
     return np.where(size > 0, size, size.max(initial=0.0) or 1.0)

@@ -1,4 +1,4 @@
-"""Floquet multipliers along branches: segment by segment between the crossings of the stages, or by sampled tangents."""
+"""Floquet multipliers along branches: from segment to segment between crossings of stages, or by sampled tangents."""
 
 from __future__ import annotations
 
@@ -78,9 +78,10 @@ def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
 
 
 @lru_cache(maxsize=64)
-def _linear(split: Split) -> Coordinates:
-    """Coordinates of the linear part with the references in it."""
+def _linear(split: Split, damped: bool) -> Coordinates:
+    """Coordinates of the linear part with the reference springs in it, and the reference dampers if ``damped``."""
     mass, damping, stiffness, _, lift = split.matrices
+    damping = damping if damped else split.system.C
     return coordinates(mass, damping, stiffness + split.speed**2 * lift, split.weights, split.rigid)
 
 
@@ -95,11 +96,13 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     if any(law.remembers for law in split.laws):
         laws = [(law.address, np.asarray(law.parameters)) for law in split.laws]
         remembers = np.array([int(law.remembers) for law in split.laws])
-        return monodromy_remembering(_linear(split), laws, remembers, reference, angles, rates, 2 * np.pi / pace)
+        return monodromy_remembering(
+            _linear(split, False), laws, remembers, split.reference_stiffness, angles, rates, 2 * np.pi / pace
+        )
     told = [law.evaluate(a, r) for law, a, r in zip(split.laws, angles, rates, strict=True)]
     stiffness = np.stack([t[1] for t in told], axis=1) - reference[:, 0]
     damping = np.stack([t[2] for t in told], axis=1) - reference[:, 1]
-    return monodromy_sampled(_linear(split), stiffness, damping, 2 * np.pi / pace).matrix
+    return monodromy_sampled(_linear(split, True), stiffness, damping, 2 * np.pi / pace).matrix
 
 
 def with_hidden_events(problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray) -> tuple[Point, ...]:
@@ -108,27 +111,33 @@ def with_hidden_events(problem: HarmonicProblem, points: tuple[Point, ...], foun
     A complex pair that leaves the unit circle is a Neimark–Sacker bifurcation; a real multiplier that passes −1 where
     no determinant was watched, as with laws that remember, a period doubling.
     """
+    counts = {name: measure(found) for name, measure in HIDDEN.items()}
+    events = np.array([bool(point.event) for point in points])
+    quiet = ~(events[:-1] | events[1:])
     out = [points[0]]
-    for i in range(len(points) - 1):
-        start, end = points[i], points[i + 1]
-        if not (start.event or end.event):
-            for name, measure in (("period doubling", _beyond_minus_one), (TORUS, _pairs_outside)):
-                if measure(found[i]) != measure(found[i + 1]):
-                    out.append(_located(problem, start, end, name, measure))
+    for i, end in enumerate(points[1:]):
+        for name, count in counts.items():
+            if quiet[i] and count[i] != count[i + 1]:
+                out.append(_located(problem, points[i], end, name, HIDDEN[name]))
         out.append(end)
     return tuple(out)
 
 
-def _pairs_outside(values: ComplexArray) -> int:
-    return int(np.count_nonzero((np.abs(values) > 1 + MARGIN) & (values.imag > 1e-3)))
+def _pairs_outside(values: ComplexArray) -> IntArray:
+    """How many complex pairs (…) of multipliers (…, states) lie outside of the unit circle."""
+    return np.asarray(np.count_nonzero((np.abs(values) > 1 + MARGIN) & (values.imag > 1e-3), axis=-1))
 
 
-def _beyond_minus_one(values: ComplexArray) -> int:
-    return int(np.count_nonzero((values.real < -1 - MARGIN) & (np.abs(values.imag) < 1e-9)))
+def _beyond_minus_one(values: ComplexArray) -> IntArray:
+    """How many real multipliers are below −1."""
+    return np.asarray(np.count_nonzero((values.real < -1 - MARGIN) & (np.abs(values.imag) < 1e-9), axis=-1))
+
+
+HIDDEN: dict[str, Callable[[ComplexArray], IntArray]] = {"period doubling": _beyond_minus_one, TORUS: _pairs_outside}
 
 
 def _located(
-    problem: HarmonicProblem, start: Point, end: Point, name: str, measure: Callable[[ComplexArray], int]
+    problem: HarmonicProblem, start: Point, end: Point, name: str, measure: Callable[[ComplexArray], IntArray]
 ) -> Point:
     """The place between two points where the measure changes, by halving."""
     low, high, was = start, end, measure(branch_multipliers(problem, start.z[None])[0])

@@ -60,7 +60,8 @@ def _states(problem: HarmonicProblem, points: Array) -> States:
     torque = element_torques(split.system, omega.ravel(), turning, flat).reshape(*q.shape[:2], -1)
     torque[..., list(split.places)] += np.moveaxis(force, 1, 2)
     angle = node_angles(split.system, flat).reshape(*q.shape[:2], -1)
-    return States(angle, q @ split.system.connections.weights.T, torque, q)
+    twist = np.asarray(q @ split.system.connections.weights.T, dtype=complex)
+    return States(angle, twist, torque, q)
 
 
 def driving(problem: HarmonicProblem, value: Array) -> ComplexArray:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS, doubling_test
 from torsional.numerics.continuation import Corrected
 from torsional.solvers.periodic.equations import Split
@@ -42,7 +42,7 @@ class VariedProblem(HarmonicProblem):
         for i, z in enumerate(points):
             yield slice(i, i + 1), self.frozen(float(z[-1] * self.scale[-1]))
 
-    def linearised(self, z: Array) -> tuple[Array, Array, Array, Array]:
+    def linearised(self, z: Array) -> tuple[Array, Array, Array, ComplexArray]:
         """Residual, Jacobian, derivative by the parameter and tangent spectra."""
         residual, jacobian, _, spectra = super().linearised(z)
         return residual, jacobian, self._slope(z), spectra
@@ -53,7 +53,7 @@ class VariedProblem(HarmonicProblem):
         return np.asarray((sides[0] - sides[1]) / (2 * NUDGE * self.scale[-1]))
 
     def correct(self, guess: Array, normal: Array) -> Corrected:
-        """Newton's method across a normal, as the compiled one; the derivative by the parameter is that of the guess."""
+        """Newton's method across a normal, as the compiled one; derivatives by the parameter are those of the guess."""
         z, tangent, values = guess.copy(), np.zeros_like(guess), np.zeros(len(self.tests))
         slope, size, last = self._slope(guess), np.inf, np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
