@@ -104,8 +104,8 @@ def monodromy_remembering(
     """Monodromy matrix (states + remembering laws, same) over one ``period`` [s] of a motion.
 
     ``linear``: `coordinates` with the ``reference`` stiffness (m,) [Nm/rad] of each connection in K; ``laws``: address
-    of the kernel and parameters of each; ``remembers`` (m,) 0 or 1; ``angles``, ``rates`` (m, samples) of the motion.  The
-    error falls with the square of the samples for smooth laws.
+    of the kernel and parameters of each; ``remembers`` (m,) 0 or 1; ``angles``, ``rates`` (m, samples) of the motion.
+    The error falls with the square of the samples for smooth laws.
     """
     samples = angles.shape[1]
     step = period / samples
