@@ -81,7 +81,9 @@ class Split:
     @cached_property
     def reference_damping(self) -> Array:
         """Reference dampers (m,) [Nms/rad], which keep undamped poles off the path."""
-        return 1e-3 * self.reference_stiffness
+        w = self.weights
+        beside = np.einsum("mi,ij,mj->m", w, self.system.K, w) / np.square((w * w).sum(axis=1))
+        return 1e-3 * np.where(self.reference_stiffness > 0, self.reference_stiffness, beside)
 
     @cached_property
     def matrices(self) -> Array:
@@ -109,7 +111,10 @@ class Split:
         mass, damping, stiffness = self.matrices[:3]
         w, largest = self.weights, np.sqrt(np.abs(found.poles).max(initial=1.0))
         for omega in (0.3 * largest, largest, 1.1 * largest):
-            direct = w @ np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, w.T)
+            try:
+                direct = w @ np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, w.T)
+            except np.linalg.LinAlgError:
+                return False
             summed = found.receptance(1j * omega, w, w)
             if not np.abs(summed - direct).max() <= TRUSTED * np.abs(direct).max():
                 return False
@@ -119,6 +124,12 @@ class Split:
     def rigid(self) -> Array:
         """Rotations (N, r) that no spring and no law holds back."""
         return null_vectors(self._elastic)
+
+    @cached_property
+    def rigid_turning(self) -> Array:
+        """Rotations (N, r) that nothing holds back while the engine turns: pendulums are held by centrifugal force."""
+        c = self.system.connections
+        return null_vectors(np.vstack([self._elastic, c.weights[c.centrifugal_stiffness > 0]]))
 
     @property
     def _elastic(self) -> Array:

@@ -32,7 +32,7 @@ def stage_bases(split: Split) -> StageBases:
     s = split.system.switched(split.speed)
     w = split.weights
     stiffness = s.K + split.speed**2 * s.S
-    return StageBases(s.M, s.C, stiffness, w, [law.parameters for law in split.laws], split.rigid)
+    return StageBases(s.M, s.C, stiffness, w, [law.parameters for law in split.laws], split.rigid_turning)
 
 
 def motion_at(harmonics: ComplexArray, tau: Array) -> Array:
@@ -82,7 +82,7 @@ def _linear(split: Split, damped: bool) -> Coordinates:
     """Coordinates of the linear part with the reference springs in it, and the reference dampers if ``damped``."""
     mass, damping, stiffness, _, lift = split.matrices
     damping = damping if damped else split.system.C
-    return coordinates(mass, damping, stiffness + split.speed**2 * lift, split.weights, split.rigid)
+    return coordinates(mass, damping, stiffness + split.speed**2 * lift, split.weights, split.rigid_turning)
 
 
 def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
