@@ -75,8 +75,8 @@ def test_every_tag_is_closed_and_every_link_leads_somewhere(read: Reader) -> Non
 
 
 def test_sections(read: Reader) -> None:
-    wanted = ["findings", "machine-1", "machine-2", "interference", "excitation", "orders", "maps", "travel", "cycle"]
-    assert [attrs["id"] for attrs in read.all("section")] == [*wanted, "conventions"]
+    wanted = ["findings", "machine-1", "machine-2", "interference", "excitation", "orders", "maps", "travel", "motions"]
+    assert [attrs["id"] for attrs in read.all("section")] == [*wanted, "cycle", "conventions"]
 
 
 def test_every_picture_has_a_caption_and_a_text(read: Reader) -> None:

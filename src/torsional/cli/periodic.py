@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 BETWEEN = 201
 """Values at which every branch has a point beside those that the solver chooses, so that pictures are smooth."""
 
+_WIDER = "a wider range, or --isolated, may show one"
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -107,9 +109,12 @@ def run(
 
 def _warn_unsettled(data: xr.Dataset, span: Span) -> None:
     """Say where the machine must do something else than what was found."""
+    at = data.bifurcation_value.values[data.bifurcation_type.values == "Neimark–Sacker"]
     for low, high in without_stable(data):
         ends = " to ".join(show(value, span.quantity) for value in (low, high))
-        complain(f"no stable motion was found from {ends}; a wider range, or --isolated, may show one", kind="warning")
+        turned = np.isclose(at[:, None], [low, high], rtol=1e-6).any()
+        told = "the motion takes up a frequency there that is no order of the engine" if turned else _WIDER
+        complain(f"no stable periodic motion was found from {ends}; {told}", kind="warning")
 
 
 def _document(request: Request, gear: str, span: Span, at: float | None, view: View) -> dict[str, object]:

@@ -19,16 +19,14 @@ from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.periodic import subharmonic_map
 from torsional.studies.region import stretches
+from torsional.studies.subharmonic import full_load_curve, sought_region, within
 from torsional.units import QUANTITIES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SPEEDS, TORQUES = 71, 26
-MARGIN = 0.15
-"""Room around a region that is looked at more closely, in shares of its size."""
 
 
 def run(
@@ -49,50 +47,22 @@ def run(
     if node or element:
         chosen_places(machine, engaged, [node] if node else None, [element] if element else None)
     inputs.affordable(len(speeds) * len(torques), 16)
-
-    def mapped(speeds: Array, torques: Array) -> xr.Dataset:
-        with progress("mean torques", request.quiet or request.as_json) as moved:
-            found = subharmonic_map(
-                machine, speeds, torques, engaged or None, element=element, node=node, progress=moved
-            )
-        return found.assign(within_full_load=(("torque", "speed"), within_full_load(machine, speeds, torques)))
-
-    data = mapped(speeds, torques)
-    closer = region_in(data) if not (speed or torque) else None
-    if closer is not None:
-        data = mapped(*closer)
+    with progress("mean torques", request.quiet or request.as_json) as moved:
+        data = sought_region(
+            machine,
+            speeds,
+            torques,
+            engaged or None,
+            closely=not (speed or torque),
+            element=element,
+            node=node,
+            progress=moved,
+        )
     settings = {"gear": engaged, "element": data.attrs["element"], "node": data.attrs["node"]}
     document = told_settings(request, **settings, order=data.attrs["order"])
     title = f"Order {float(data.attrs['order']):g}{in_gear(engaged)}"
     answer = Answer("subharmonic", tables(data, title), document, data, picture=lambda: _picture(data, machine, title))
     deliver(answer, request)
-
-
-def region_in(data: xr.Dataset) -> tuple[Array, Array] | None:
-    """Round speeds and mean torques over what a map has found and a margin around it; None where that is nothing."""
-    axes = []
-    for dim, other, unit in (("speed", "torque", np.pi / 30), ("torque", "speed", 1.0)):
-        values = data[dim].values
-        here = np.append(values[(data.amplitude > 0).any(other).values], data[f"boundary_{dim}"].values)
-        if not here.size:
-            return None
-        margin = MARGIN * float(np.ptp(here)) or float(values[1] - values[0])
-        low, high = max(here.min() - margin, values[0]), min(here.max() + margin, values[-1])
-        axes.append(unit * round_steps(low / unit, high / unit, len(values)))
-    return axes[0], axes[1]
-
-
-def round_steps(low: float, high: float, count: int) -> Array:
-    """About ``count`` values within two, in steps of 1, 2, 2.5 or 5 times a power of ten; the ends if those are few.
-
-    >>> round_steps(847.0, 1412.0, 30).tolist()[:3]
-    [850.0, 875.0, 900.0]
-    """
-    wanted = (high - low) / max(count - 1, 1)
-    power = 10.0 ** np.floor(np.log10(wanted))
-    step = min((f * power for f in (1, 2, 2.5, 5, 10)), key=lambda width: abs(np.log(width / wanted)))
-    values = step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1)
-    return values if len(values) > 1 else np.array([low, high])
 
 
 def _several(values: Array, option: str) -> Array:
@@ -103,17 +73,9 @@ def _several(values: Array, option: str) -> Array:
     return values
 
 
-def within_full_load(model: Model, speeds: Array, torques: Array) -> Array:
-    """Which cells (torque, speed) the engine can reach; all of them without a full-load curve."""
-    if model.engine is None or model.engine.full_load is None:
-        return np.ones((len(torques), len(speeds)), dtype=bool)
-    return np.asarray(torques[:, None] <= model.engine.full_load(speeds) * (1 + 1e-9))
-
-
 def tables(data: xr.Dataset, title: str) -> list[Table]:
     """The region within full load: its extent and largest amplitudes, then torque by torque."""
-    over = [name for name, values in data.data_vars.items() if {"torque", "speed"} <= set(values.dims)]
-    inside = data.assign({name: data[name].where(data.within_full_load, 0) for name in over})
+    inside = within(data)
     if not bool((inside.amplitude > 0).any()):
         return [_nothing(data, title)]
     return [_summary(inside, title), _by_torque(inside, data, title)]
@@ -170,18 +132,8 @@ def _picture(data: xr.Dataset, model: Model, title: str) -> Figure:
     from torsional.plots import panels, plot_region
     from torsional.plots.style import figure_of
 
+    curve = full_load_curve(model, float(data.speed[0]), float(data.speed[-1]))
     drawn = panels(1, 2, (7.0, 4.8))
     for axes, shown in zip(drawn, ("amplitude", "acceleration"), strict=True):
-        plot_region(data, shown, full_load=_full_load(data, model), title=title, axes=axes)
+        plot_region(data, shown, full_load=curve, title=title, axes=axes)
     return figure_of(drawn[0])
-
-
-def _full_load(data: xr.Dataset, model: Model) -> xr.DataArray | None:
-    """The full-load curve over the speeds of the map."""
-    if model.engine is None or model.engine.full_load is None:
-        return None
-    curve = model.engine.full_load
-    low, high = float(data.speed[0]), float(data.speed[-1])
-    speeds = np.unique([*np.linspace(low, high, 200), *(s for s in curve.speeds if low < s < high)])
-    told = {"quantity": "torque"}
-    return xr.DataArray(curve(speeds), {"speed": ("speed", speeds, {"quantity": "speed"})}, "speed", attrs=told)

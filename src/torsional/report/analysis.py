@@ -13,6 +13,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, irregularity, named_modes, swing
 from torsional.report.labels import labels
+from torsional.report.motions import Motions, sought
 from torsional.results import dataset
 from torsional.solvers.campbell import campbell, full_load
 from torsional.solvers.map import response_map
@@ -50,7 +51,8 @@ class Response:
 class Variant:
     """One model analysed: ``interference`` as `campbell` gives it, ``names`` of the modes by gear, ``response``.
 
-    ``missing`` says in a sentence why there is no response.
+    ``missing`` says in a sentence why there is no response; ``motions`` those of springs with stages, where it has
+    some, and ``unmoved`` why they are not told.
     """
 
     label: str
@@ -59,6 +61,8 @@ class Variant:
     names: dict[str, list[str]]
     response: Response | None
     missing: str = ""
+    motions: Motions | None = None
+    unmoved: str = ""
 
     @property
     def main_order(self) -> float | None:
@@ -168,7 +172,9 @@ def _variant(model: Model, label: str, grid: tuple[Array, Array]) -> Variant:
     if model.engine is None:
         return Variant(label, model, met, names, None, "The model has no engine, so this page tells its modes only.")
     try:
-        return Variant(label, model, met, names, _response(model, *grid))
+        found = _response(model, *grid)
+        motions, unmoved = sought(model, usable_speeds(model))
+        return Variant(label, model, met, names, found, "", motions, unmoved)
     except ModelError as error:  # modes need less than a response: a report tells them and says what is missing
         return Variant(label, model, met, names, None, f"The vibration under engine torque is not told: {error}.")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from torsional.report.analysis import Comparison, Variant
 from torsional.report.finding import Finding
 from torsional.report.levels import irregularities, largest, unsolved
+from torsional.report.motions import motion_findings
 from torsional.report.ratios import against
 from torsional.report.resonances import resonances
 from torsional.report.springs import springs_of
@@ -32,4 +33,8 @@ def _about(variant: Variant) -> list[Finding]:
     found += [largest(variant.response), *irregularities(variant.response)]
     for spring in springs:
         found += travel(variant.response, spring)
+    if variant.motions is not None:
+        found += motion_findings(variant.motions)
+    if variant.unmoved:
+        found.append(Finding("unmoved", variant.unmoved))
     return found + unsolved(variant.response)

@@ -7,6 +7,7 @@ from torsional.report.analysis import Comparison, Variant
 from torsional.report.blocks import Block, Heading, Items, Picture, Section, Text
 from torsional.report.findings import findings
 from torsional.report.labels import listed, told
+from torsional.report.motion_pictures import motion_blocks
 from torsional.report.springs import springs_of
 
 
@@ -14,7 +15,7 @@ def sections(comparison: Comparison) -> list[Section]:
     """All sections that have something to tell."""
     made = [summary(comparison), *[machine(comparison, v, i) for i, v in enumerate(comparison.variants)]]
     made += [interference(comparison), excitation(comparison), cuts(comparison), maps(comparison)]
-    made += [springs(comparison), synthesis(comparison), conventions(comparison)]
+    made += [springs(comparison), motions(comparison), synthesis(comparison), conventions(comparison)]
     return [section for section in made if section.blocks]
 
 
@@ -99,6 +100,12 @@ def springs(comparison: Comparison) -> Section:
     return Section("travel", "Travel of the springs", tuple(blocks))
 
 
+def motions(comparison: Comparison) -> Section:
+    """Periodic motions of springs with stages."""
+    blocks = [block for variant in comparison.variants for block in motion_blocks(variant)]
+    return Section("motions", "Periodic motions, springs as they are", tuple(blocks))
+
+
 def synthesis(comparison: Comparison) -> Section:
     """The signal over the cycle."""
     return Section("cycle", "Over one engine cycle", tuple(response_pictures.cycle_pictures(comparison)))
@@ -111,7 +118,8 @@ def conventions(comparison: Comparison) -> Section:
         "over one cycle of 720° crank angle, all orders added with their phases. The crank angle is zero at firing of "
         "cylinder 1. Twists and torques of springs are positive while the engine drives.",
         "Every mean torque has its own equilibrium; vibration is linear about it, with the tangent stiffness there. "
-        "Where a spring swings across a change of its stiffness, that is an approximation.",
+        "Where a spring swings across a change of its stiffness, that is an approximation; periodic motions are not "
+        "linearised, and told for springs with stages in the last gear.",
     ]
     for variant, response in comparison.answered:
         speeds, torques, orders = response.map.speed, response.map.torque, response.orders.order
