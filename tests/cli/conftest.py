@@ -55,7 +55,7 @@ def process() -> Run:
         own = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "NO_COLOR"))}
         line = [sys.executable, "-c", code or "import sys; from torsional.cli import main; sys.exit(main())"]
         done = subprocess.run(
-            [*line, *map(str, arguments)], capture_output=True, env={**own, **environment}, timeout=120
+            [*line, *map(str, arguments)], capture_output=True, env={**own, **environment}, timeout=600
         )
         return Told(done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8"))
 

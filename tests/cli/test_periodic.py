@@ -196,6 +196,16 @@ def torsional_periodic() -> Any:
     return torsional.cli.periodic
 
 
+@pytest.mark.full
+def test_after_warmup_nothing_is_left_to_compile(process: Run, tmp_path: Path) -> None:
+    kept = tmp_path / "kernels"
+    assert process("warmup", NUMBA_CACHE_DIR=str(kept)).code == 0
+    before = sorted(path.name for path in kept.rglob("*.nbc"))
+    for command in (["periodic", *AT_1200, "--at", "900rpm"], ["subharmonic", *SMALL]):
+        assert process(command[0], STAGED, *command[1:], "--quiet", NUMBA_CACHE_DIR=str(kept)).code == 0
+        assert sorted(path.name for path in kept.rglob("*.nbc")) == before, command[0]
+
+
 # --- what is typed ---
 
 

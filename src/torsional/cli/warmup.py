@@ -16,11 +16,12 @@ from torsional.cli.answers import print_json
 from torsional.cli.documents import amount, json_text
 from torsional.cli.progress import progress
 from torsional.cli.tables import Column, Table, print_tables
-from torsional.files import load_model, starter
-from torsional.model import Model
+from torsional.files import changed, load_model, starter
+from torsional.model import RPM, Model
 from torsional.numerics.callbacks import address_of
 from torsional.solvers.campbell import campbell
 from torsional.solvers.map import HALF_ORDERS, response_map
+from torsional.solvers.periodic import model_response, subharmonic_map
 
 Step = tuple[str, Callable[[], object]]
 
@@ -61,6 +62,22 @@ def steps(model: Model) -> Iterator[Step]:
     yield "respond", lambda: respond.response(model, gear, speeds, torques[[1, 1, 0]], HALF_ORDERS, nodes, elements)
     yield "map", lambda: maps.reduced(response_map(model, speeds, torques, [gear]), model)
     yield "laws", _laws
+    yield "periodic", lambda: _periodic(model)
+
+
+def _periodic(model: Model) -> None:
+    """Branches, a doubled one among them, and the region over speed and torque, of a spring with two stages."""
+    staged = changed(
+        model,
+        {
+            "absorber.stiffness": None,
+            "absorber.stop_torque": None,
+            "absorber.stages": [{"up_to": 1000.0, "stiffness": 8e3}, {"up_to": 3500.0, "stiffness": 24e3}],
+        },
+    )
+    span = (800 * RPM, 1000 * RPM)
+    model_response(staged, span, 1200.0)
+    subharmonic_map(staged, np.linspace(*span, 5), (1150.0, 1250.0))
 
 
 def _laws() -> None:
