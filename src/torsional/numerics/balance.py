@@ -160,7 +160,7 @@ def corrected(
             break
         z -= step
         last = change
-        if change <= ENOUGH:
+        if change <= ENOUGH * max(1.0, np.abs(z).max()):
             tangent[n] = 1.0
             backsolve(a, order, tangent)
             tangent /= np.sqrt(tangent @ tangent)

@@ -33,14 +33,12 @@ def factor(a: Array, order: IntArray) -> float:
         if a[k, k] < 0.0:
             sign = -sign
         inverse = 1.0 / a[k, k]
-        row = a[k]
         for i in range(k + 1, n):
-            factor_ = a[i, k] * inverse
-            a[i, k] = factor_
-            if factor_ != 0.0:
-                target = a[i]
+            share = a[i, k] * inverse
+            a[i, k] = share
+            if share != 0.0:
                 for j in range(k + 1, n):
-                    target[j] -= factor_ * row[j]
+                    a[i, j] -= share * a[k, j]
     return sign
 
 

@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import End, Point, Settings, Trace, both_ways, followed
 from torsional.solvers.periodic.problem import JOINED, HarmonicProblem, Setting, WatchedProblem
-from torsional.solvers.periodic.stability import branch_multipliers, with_hidden_events
+from torsional.solvers.periodic.stability import with_hidden_events
 from torsional.solvers.periodic.start import first_solution
+from torsional.solvers.periodic.verdict import Verdict, verdict
 
 MAIN, DOUBLED, BROKEN, CROSSED, ISOLATED = "main", "period doubling", "symmetry breaking", "crossing", "isolated"
 TRACING = Settings(first_step=0.01, largest_step=0.1, largest_angle=0.35, most_points=2000)
@@ -56,9 +57,9 @@ class Branch:
         return any(float(np.abs(point.z - z).max()) < near for z in joints)
 
     @cached_property
-    def multipliers(self) -> ComplexArray:
-        """Floquet multipliers (points, states), by falling modulus."""
-        return branch_multipliers(self.problem, self.scaled)
+    def verdict(self) -> Verdict:
+        """Floquet multipliers and stability of its points."""
+        return verdict(self.problem, self.points)
 
     @property
     def scaled(self) -> Array:
@@ -122,13 +123,17 @@ class Explorer:
                 failed.append(error)
                 continue
             if not self.known(problem, start):
-                trace = followed(problem, start, direction, self.span, self.settings)
-                self._add(MAIN, problem, trace, "started at an end of the range")
+                self.follow(problem, start, direction)
         if not self.branches:
             raise failed[0]
         self.lost += [str(error) for error in failed]
 
-    def isolated(self, problem: HarmonicProblem, start: Array) -> bool:
+    def follow(self, problem: HarmonicProblem, start: Array, direction: int) -> None:
+        """Add the main branch through a scaled solution at an end of the span."""
+        trace = followed(problem, start, direction, self.span, self.settings)
+        self._add(MAIN, problem, trace, "started at an end of the range")
+
+    def isolated(self, problem: HarmonicProblem, start: Array, kind: str = ISOLATED) -> bool:
         """Add the branch through a scaled solution that lies on none of those known; whether it was a new one."""
         if self.known(problem, start):
             return False
@@ -136,19 +141,20 @@ class Explorer:
         if len(trace.points) < 2:
             return False
         began = trace.began.advice if trace.began else End.CLOSED.advice
-        self._add(ISOLATED, problem, trace, began)
+        self._add(kind, problem, trace, began)
         return True
 
     def known(self, problem: HarmonicProblem, z: Array) -> bool:
         """Whether a scaled solution lies on a known branch, be it moved by periods of the excitation or mirrored."""
         if any(_passes(branch, problem, z) for branch in self.branches):
             return True
-        odd = z[WatchedProblem.of_odd(problem).watched]
-        if 2 * problem.base_order > self.base_order or np.abs(odd).max(initial=0.0) > ALIKE:
-            return False
-        wider = self.problem(2 * problem.base_order)
-        harmonics = problem.harmonics_of(z)[:, ::2]
-        return self.known(wider, wider.point_of(harmonics, float(z[-1] * problem.scale[-1])))
+        harmonics = problem.harmonics_of(z)
+        for times in range(round(self.base_order / problem.base_order), 1, -1):  # is its period shorter than it seems?
+            rest = np.arange(harmonics.shape[1]) % times != 0
+            if np.abs(harmonics[:, rest]).max(initial=0.0) <= ALIKE * self.setting.angle_scale.min():
+                wider = self.problem(times * problem.base_order)
+                return self.known(wider, wider.point_of(harmonics[:, ::times], float(z[-1] * problem.scale[-1])))
+        return False
 
     def _generation(self, number: int) -> int:
         count = 0
@@ -180,10 +186,7 @@ class Explorer:
 
     def _cross(self, branch: Branch, origin: tuple[int, int], event: Point) -> None:
         """Follow the branch that crosses another at a branch point, to both sides unless they mirror each other."""
-        _, jacobian, slope, _ = branch.problem.linearised(event.z)
-        scale, problem = branch.problem.scale, branch.problem
-        rows = np.column_stack([jacobian * scale[:-1], slope * scale[-1]]) / scale[:-1, None]
-        null = np.linalg.svd(np.vstack([rows, event.tangent]))[2][-1]
+        problem, null = branch.problem, _crossing(branch, event)
         part = np.abs(null) > 1e-5 * np.abs(null).max()
         if np.abs(event.z[part]).max() < 1e-5 and not part[-1]:
             if not self._joined(problem, event):
@@ -241,10 +244,26 @@ class Explorer:
             return
         branch = Branch(kind, problem, trace.points, started, ended, parent)
         if self.stability:
-            points = with_hidden_events(problem, trace.points, branch.multipliers)
+            told = branch.verdict
+            points = with_hidden_events(problem, trace.points, told.multipliers, told.confirmed)
             if len(points) > len(trace.points):
                 branch = replace(branch, points=points)
         self.branches.append(branch)
+
+
+def _crossing(branch: Branch, event: Point) -> Array:
+    """Direction of the curve that crosses a branch at a branch point.
+
+    Two directions solve the linearised equations there; it is the one across the way that the branch itself takes.
+    """
+    _, jacobian, slope, _ = branch.problem.linearised(event.z)
+    scale = branch.problem.scale
+    rows = np.column_stack([jacobian * scale[:-1], slope * scale[-1]]) / scale[:-1, None]
+    plane = np.linalg.svd(rows)[2][-2:]
+    place = next(i for i, point in enumerate(branch.points) if point is event)
+    before, after = branch.points[max(place - 1, 0)], branch.points[min(place + 1, len(branch.points) - 1)]
+    along = plane @ (after.z - before.z)
+    return np.asarray(np.array([-along[1], along[0]]) @ plane / np.linalg.norm(along))
 
 
 def _passes(branch: Branch, problem: HarmonicProblem, z: Array) -> bool:

@@ -66,7 +66,7 @@ class CurveProblem:
             if not np.isfinite(change) or (iteration > 4 and change > 4 * last):
                 break
             y, last = y - both[:, 0], change
-            if change <= 10 * ENOUGH:
+            if change <= 10 * ENOUGH * max(1.0, float(np.abs(y).max())):
                 self.border = self._null(self._problem(y), y[:-1])
                 tangent = both[:, 1] / np.linalg.norm(both[:, 1])
                 return Corrected(y, tangent, iteration, size, True, np.array([self._inside(y)]))

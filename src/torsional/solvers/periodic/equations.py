@@ -20,8 +20,10 @@ from torsional.system import System
 
 MOST_CONNECTIONS = 12
 SMOOTH_SAMPLES, REMEMBERING_SAMPLES = 256, 512
-TRUSTED = 1e-9
+TRUSTED = 1e-10
 """Largest relative difference between pole–residue sums and a direct solve before the latter takes over."""
+COMPARED = np.array([0.25, 0.5, 1.0, 1.5, 3.0, 6.0, 12.0])
+"""Orders at which they are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +85,7 @@ class Split:
         """Reference dampers (m,) [Nms/rad], which keep undamped poles off the path."""
         w = self.weights
         beside = np.einsum("mi,ij,mj->m", w, self.system.K, w) / np.square((w * w).sum(axis=1))
-        return 1e-3 * np.where(self.reference_stiffness > 0, self.reference_stiffness, beside)
+        return 0.02 / self.speed * np.where(self.reference_stiffness > 0, self.reference_stiffness, beside)
 
     @cached_property
     def matrices(self) -> Array:
@@ -105,20 +107,31 @@ class Split:
             m.weights,
             m.inertia,
         )
-        return found if self._agrees(found) else None
+        return found if self._agrees(found, self.weights) else None
 
-    def _agrees(self, found: PoleResidues) -> bool:
+    @cached_property
+    def _direct(self) -> ComplexArray:
+        """Z⁻¹ wᵀ (orders compared, N, m) by a direct solve; not a number where that is singular."""
         mass, damping, stiffness = self.matrices[:3]
-        w, largest = self.weights, np.sqrt(np.abs(found.poles).max(initial=1.0))
-        for omega in (0.3 * largest, largest, 1.1 * largest):
-            try:
-                direct = w @ np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, w.T)
-            except np.linalg.LinAlgError:
-                return False
-            summed = found.receptance(1j * omega, w, w)
-            if not np.abs(summed - direct).max() <= TRUSTED * np.abs(direct).max():
-                return False
-        return True
+        omega = (self.speed * COMPARED)[:, None, None]
+        z = stiffness + 1j * omega * damping - omega**2 * mass
+        try:
+            return np.asarray(
+                np.linalg.solve(z, np.broadcast_to(self.weights.T, (len(COMPARED), *self.weights.T.shape)))
+            )
+        except np.linalg.LinAlgError:
+            return np.full((len(COMPARED), *self.weights.T.shape), np.nan, dtype=complex)
+
+    def summed(self, onto: Array) -> PoleResidues | None:
+        """The poles, if their sums agree with a direct solve for loads (loads, N) on the coordinates too."""
+        found = self.poles
+        return found if found and self._agrees(found, onto) else None
+
+    def _agrees(self, found: PoleResidues, onto: Array) -> bool:
+        omega = (self.speed * COMPARED)[:, None, None]
+        direct = onto @ self._direct
+        sums = (onto @ found.shapes.T / (1j * omega - found.poles)) @ (self.weights @ found.shapes.T).T
+        return bool((np.abs(sums - direct) <= TRUSTED * np.abs(direct).max(axis=2, keepdims=True)).all())
 
     @cached_property
     def rigid(self) -> Array:
@@ -185,13 +198,17 @@ def balance(
     speed: float | None = None,
     half_orders: int = 0,
     samples: int = 0,
+    periods: int = 1,
 ) -> Balance:
-    """The compiled balance of a split system; with ``speed`` [rad/s] the parameter is another quantity than speed."""
+    """The compiled balance of a split system; with ``speed`` [rad/s] the parameter is another quantity than speed.
+
+    ``periods``: how many periods of the excitation the base order takes.
+    """
     onto = split.system.T[[split.system.node_index(node) for node in load.nodes]]
     carried = split.twist(split.balanced(onto, hold) if np.abs(load.order(0.0)).max() > 0 else onto)
     orders = base_order * np.arange(harmonics + 1)
     torque = np.stack([load.order(n) for n in orders], axis=2)
-    poles = split.poles
+    poles = split.summed(onto)
     modal: ComplexArray = torque @ (onto @ poles.shapes.T) if poles else np.zeros((1, 4, 1, 0), complex)
     values: ComplexArray = poles.poles if poles else np.zeros(0, complex)
     left: ComplexArray = split.weights @ poles.shapes.T if poles else np.zeros((len(split.laws), 0), complex)
@@ -202,10 +219,10 @@ def balance(
         fixed_speed=float(speed or 0.0),
         by_speed=int(speed is None),
         breaks=np.ascontiguousarray(load.breaks, dtype=float),
-        poles=np.stack([-values.real, values.imag]),
-        left=np.stack([left.real, left.imag]),
-        pairs=np.stack([pairs.real, pairs.imag]),
-        modal_load=np.stack([modal.real, modal.imag]),
+        poles=np.ascontiguousarray(np.stack([-values.real, values.imag])),
+        left=np.ascontiguousarray(np.stack([left.real, left.imag])),
+        pairs=np.ascontiguousarray(np.stack([pairs.real, pairs.imag])),
+        modal_load=np.ascontiguousarray(np.stack([modal.real, modal.imag])),
         matrices=np.ascontiguousarray(split.matrices),
         weights=np.ascontiguousarray(split.weights),
         node_load=np.ascontiguousarray(torque @ onto),
@@ -219,7 +236,7 @@ def balance(
         address=address,
         remembers=remembers,
         half_orders=half_orders,
-        table=scan_table(harmonics, samples or _samples(split.laws, harmonics)),
+        table=scan_table(harmonics, samples or _samples(split.laws, harmonics, periods)),
         scale=np.ascontiguousarray(scale, dtype=float),
     )
 
@@ -234,9 +251,9 @@ def packed(laws: Sequence[Law]) -> tuple[Array, IntArray, IntArray, IntArray]:
     return np.concatenate(values), numbers[0], numbers[1], numbers[2]
 
 
-def _samples(laws: Sequence[Law], harmonics: int) -> int:
-    """Samples a period: as few as find the crossings of hinges, many where a law is sampled."""
+def _samples(laws: Sequence[Law], harmonics: int, periods: int) -> int:
+    """Samples of a motion: as few as find the crossings of hinges, many in each period where a law is sampled."""
     if all(isinstance(law, Hinges) for law in laws):
         return 0
     least = REMEMBERING_SAMPLES if any(law.remembers for law in laws) else SMOOTH_SAMPLES
-    return max(least, 1 << (16 * harmonics - 1).bit_length())
+    return periods * max(least, 1 << (16 * harmonics // periods - 1).bit_length())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import reduce
+import math
 
 import numpy as np
 import xarray as xr
@@ -10,9 +10,7 @@ import xarray as xr
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import Variable, dataset
 from torsional.solvers.periodic.branches import NOT_BIFURCATIONS, Branch, Explorer
-from torsional.solvers.periodic.load import common_order
 from torsional.solvers.periodic.problem import BoolArray
-from torsional.solvers.periodic.stability import MARGIN
 from torsional.solvers.periodic.states import states
 
 QUANTITIES = {"speed": "speed", "mean_torque": "torque"}
@@ -68,8 +66,9 @@ def data_unit(parameter: str) -> str:
 
 def _orders(branches: list[Branch], highest: float) -> Array:
     """All orders up to the highest that some branch has harmonics of."""
-    finest = reduce(common_order, {branch.base_order for branch in branches})
-    return np.asarray(finest * np.arange(int(highest / finest + 1e-9) + 1))
+    coarsest = max(branch.base_order for branch in branches)
+    parts = math.lcm(*(round(coarsest / branch.base_order) for branch in branches))
+    return np.asarray(coarsest * np.arange(int(parts * highest / coarsest + 1e-9) + 1) / parts)
 
 
 def _laid(branches: list[Branch], parts: list[ComplexArray], orders: Array) -> ComplexArray:
@@ -91,10 +90,11 @@ def _mean_torques(explorer: Explorer, value: Array) -> Array:
 
 
 def _stability(branches: list[Branch]) -> dict[str, Variable]:
-    values = np.concatenate([branch.multipliers for branch in branches])
+    values = np.concatenate([branch.verdict.multipliers for branch in branches])
     return {
         "multiplier": (("point", "multiplier"), values, ""),
         "stable": (("point",), np.concatenate([_stable(branch) for branch in branches]), ""),
+        "confirmed": (("point",), np.concatenate([branch.verdict.confirmed for branch in branches]), ""),
     }
 
 
@@ -106,7 +106,7 @@ def _events(branch: Branch) -> list[str]:
 
 def _stable(branch: Branch) -> BoolArray:
     """Whether each point is stable; one where a multiplier is on the unit circle goes with a stable neighbour."""
-    inside = np.asarray((np.abs(branch.multipliers) <= 1 + MARGIN).all(axis=1))
+    inside = branch.verdict.stable
     beside = np.append(inside[1:], False) | np.append(False, inside[:-1])
     return np.asarray(np.where([bool(point.event) for point in branch.points], beside | inside, inside))
 

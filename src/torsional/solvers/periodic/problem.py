@@ -31,7 +31,7 @@ class Setting:
 
     ``split`` system and ``load`` over the parameter, ``hold`` the node that takes up the mean torque, ``speed`` [rad/s]
     where it is not the parameter, ``highest_order`` of the harmonics, ``scale`` of the angles (m,) [rad] and of the
-    parameter.
+    parameter, ``main_order`` the base order of the main branch.
     """
 
     split: Split
@@ -42,6 +42,7 @@ class Setting:
     angle_scale: Array
     parameter_scale: float
     samples: int = 0
+    main_order: float = 0.0
 
     def harmonics(self, base_order: float) -> int:
         """How many multiples of a base order there are up to the highest one."""
@@ -65,6 +66,7 @@ class Setting:
             speed=self.speed,
             half_orders=half,
             samples=self.samples,
+            periods=max(1, round(self.main_order / base_order)),
         )
 
 

@@ -17,7 +17,7 @@ from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings
 from torsional.solvers.periodic.branches import TRACING, Explorer
 from torsional.solvers.periodic.equations import Split
-from torsional.solvers.periodic.isolated import seek_isolated
+from torsional.solvers.periodic.isolated import seek_doubled, seek_isolated
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.presented import presented
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
@@ -110,6 +110,8 @@ def periodic_response(
         stability=stability,
     )
     explorer.explored()
+    if depth:
+        seek_doubled(explorer)
     if isolated:
         seek_isolated(explorer)
     explorer.branches = [refined(branch, at) for branch in explorer.branches]
@@ -150,7 +152,7 @@ def explored(
     split = Split(system, turning)
     fixed = None if parameter == "speed" else speed
     unit = low if low > 0.05 * high else max(abs(low), abs(high))
-    setting = Setting(split, load, hold, fixed, highest_order, np.ones(len(split.laws)), unit)
+    setting = Setting(split, load, hold, fixed, highest_order, np.ones(len(split.laws)), unit, main_order=order)
     if setting.harmonics(order) * order < order or order > highest_order:
         raise ModelError("the highest order is below the base order", where="highest_order", found=f"{highest_order:g}")
     unscaled = make(setting, order)

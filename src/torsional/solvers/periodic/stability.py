@@ -15,8 +15,10 @@ from torsional.numerics.floquet import multipliers, ordered
 from torsional.numerics.floquet_remembering import monodromy_remembering
 from torsional.numerics.floquet_sampled import monodromy_sampled
 from torsional.numerics.piecewise_basis import Coordinates, StageBases, coordinates
+from torsional.numerics.piecewise_motion import PiecewiseMotion
 from torsional.solvers.periodic.equations import Split
-from torsional.solvers.periodic.problem import HarmonicProblem
+from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
+from torsional.solvers.periodic.states import driving
 
 SAMPLES = 512
 """Samples a period of laws that are not piecewise linear."""
@@ -77,6 +79,15 @@ def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
     return multipliers(bases, [t / p for t, p in zip(times, pace, strict=True)], stages, 2 * np.pi / pace)
 
 
+def exact_motion(problem: HarmonicProblem, z: Array) -> PiecewiseMotion:
+    """The motion in time, in periods of the base order, at the parameter of a scaled point; all laws being hinges."""
+    value = float(z[-1] * problem.scale[-1])
+    setting = problem.frozen(value).setting
+    speed = value if setting.speed is None else setting.speed
+    loads = driving(problem, np.array([value]))[0]
+    return PiecewiseMotion(stage_bases(setting.split), loads, problem.base_order * speed)
+
+
 @lru_cache(maxsize=64)
 def _linear(split: Split, damped: bool) -> Coordinates:
     """Coordinates of the linear part with the reference springs in it, and the reference dampers if ``damped``."""
@@ -105,15 +116,18 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     return monodromy_sampled(_linear(split, True), stiffness, damping, 2 * np.pi / pace).matrix
 
 
-def with_hidden_events(problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray) -> tuple[Point, ...]:
+def with_hidden_events(
+    problem: HarmonicProblem, points: tuple[Point, ...], found: ComplexArray, confirmed: BoolArray
+) -> tuple[Point, ...]:
     """The points with those bifurcations between them that only the multipliers show.
 
     A complex pair that leaves the unit circle is a Neimark–Sacker bifurcation; a real multiplier that passes −1 where
-    no determinant was watched, as with laws that remember, a period doubling.
+    no determinant is watched, as with laws that remember, a period doubling.
     """
-    counts = {name: measure(found) for name, measure in HIDDEN.items()}
+    watched = problem.tests
+    counts = {name: measure(found) for name, measure in HIDDEN.items() if name not in watched}
     events = np.array([bool(point.event) for point in points])
-    quiet = ~(events[:-1] | events[1:])
+    quiet = ~(events[:-1] | events[1:]) & confirmed[:-1] & confirmed[1:]
     out = [points[0]]
     for i, end in enumerate(points[1:]):
         for name, count in counts.items():

@@ -17,6 +17,7 @@ from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings, followed
 from torsional.solvers.equilibrium import equilibrium, settled
+from torsional.solvers.periodic.detours import between, over_amplitude, parts
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
 from torsional.solvers.periodic.varied import VariedProblem
@@ -125,13 +126,7 @@ def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
 def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the amplitude of the vibration, from the static state."""
     setting = problem.frozen(value).setting
-    torque = setting.load.at(value)
-    mean = np.where(setting.load.orders == 0, torque, 0.0)
-    load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0, 1.0]), np.stack([mean, torque]))
-    speed = value if setting.speed is None else setting.speed
-    raised = HarmonicProblem(
-        dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order
-    )
+    raised = HarmonicProblem(over_amplitude(problem, value), problem.base_order)
     start = raised.point_of(static_angles(setting, value)[:, None].astype(complex), 0.0)
     trace = followed(raised, start, 1, (0.0, 1.0), HOMOTOPY)
     if trace.points and trace.parameter[-1] == 1.0:
@@ -140,18 +135,11 @@ def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
 
 def _lighter(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the mean torque, from one high above where the law is met in another place."""
-    setting = problem.frozen(value).setting
-    torque = setting.load.at(value)
-    mean = np.where(setting.load.orders == 0, torque, 0.0)
+    mean, rest = parts(problem, value)
     if not mean.any():
         return
-    speed = value if setting.speed is None else setting.speed
     for factor in (1.5, 3.0, 0.5, 0.1):
-        ends = np.stack([torque - mean + factor * mean, torque])
-        load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0, 1.0]), ends)
-        moved = HarmonicProblem(
-            dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order
-        )
+        moved = HarmonicProblem(between(problem, value, rest + factor * mean, rest + mean), problem.base_order)
         static = static_angles(moved.setting, 0.0)[:, None].astype(complex)
         trace = followed(moved, moved.point_of(static, 0.0), 1, (0.0, 1.0), HOMOTOPY)
         if trace.points and trace.parameter[-1] == 1.0:

@@ -17,11 +17,13 @@ from torsional.numerics.balance import corrected_at
 from torsional.results import dataset
 from torsional.solvers.periodic.boundary import curve_variables, region_curves
 from torsional.solvers.periodic.branches import MAIN, Branch, Explorer
+from torsional.solvers.periodic.isolated import seek_doubled
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
 from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
+from torsional.solvers.periodic.verdict import verdict
 from torsional.system import assemble
 
 PROBES = 3
@@ -68,6 +70,7 @@ def subharmonic_map(
             replace(first.setting, load=loads.at(float(value))), first.base_order, span, depth=1, stability=False
         )
         explorer.explored()
+        seek_doubled(explorer)
         table.fill(row, explorer.branches)
         edges.append((float(value), explorer))
         progress(row + 1, len(torques))
@@ -151,7 +154,10 @@ def stable_stretches(branch: Branch) -> BoolArray:
     for start, end in pairwise(edges):
         inner = np.arange(start + 1, end) if end > start + 1 else np.array([start])
         probes = inner[np.unique(np.linspace(0, len(inner) - 1, PROBES).round().astype(int))]
-        points = scaled[probes] if end > start + 1 else 0.5 * (scaled[[start]] + scaled[[end]])
-        inside = (np.abs(branch_multipliers(branch.problem, points)) <= 1 + MARGIN).all(axis=1)
+        if end > start + 1:
+            inside = verdict(branch.problem, [branch.points[i] for i in probes]).stable
+        else:
+            middle = 0.5 * (scaled[[start]] + scaled[[end]])
+            inside = np.asarray((np.abs(branch_multipliers(branch.problem, middle)) <= 1 + MARGIN).all(axis=1))
         stable[start:end] = inside.mean() > 0.5  # beside an event a multiplier passes one a little early or late
     return stable

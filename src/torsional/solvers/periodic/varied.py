@@ -70,7 +70,7 @@ class VariedProblem(HarmonicProblem):
             if not np.isfinite(change) or (iteration > 3 and change > 4 * last):
                 break
             z, last = z - both[:, 0], change
-            if change <= ENOUGH:
+            if change <= ENOUGH * max(1.0, float(np.abs(z).max())):
                 tangent = both[:, 1] / np.linalg.norm(both[:, 1])
                 frozen = self.frozen(float(z[-1] * self.scale[-1]))
                 values[0] = np.linalg.det(rows / np.linalg.norm(rows, axis=1)[:, None]) / (normal @ tangent)
