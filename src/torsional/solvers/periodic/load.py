@@ -75,11 +75,12 @@ class Load:
             excitation.nodes, excitation.orders, np.array([0.0, total]), np.stack([varied, mean + varied])
         )
 
-    def at(self, value: float) -> ComplexArray:
-        """Torques (nodes, orders) at one value of the parameter."""
-        piece = int(np.clip(np.searchsorted(self.breaks, value, "right") - 1, 0, len(self.coefficients) - 1))
-        powers = (value - self.breaks[piece]) ** np.arange(4)
-        return np.asarray(np.tensordot(powers, self.coefficients[piece], axes=1))
+    def at(self, value: ArrayLike) -> ComplexArray:
+        """Torques S + (nodes, orders) at values of the parameter of any shape S."""
+        p = np.asarray(value, dtype=float)
+        piece = np.clip(np.searchsorted(self.breaks, p, "right") - 1, 0, len(self.coefficients) - 1)
+        d, c = (p - self.breaks[piece])[..., None, None], self.coefficients
+        return np.asarray(c[piece, 0] + d * (c[piece, 1] + d * (c[piece, 2] + d * c[piece, 3])))
 
     def order(self, order: float) -> ComplexArray:
         """Coefficients of one order (pieces, 4, nodes), zero where the load has none of it."""
@@ -90,7 +91,7 @@ class Load:
     @property
     def base_order(self) -> float:
         """The largest order of which all that count are multiples."""
-        size = np.max([np.abs(self.at(float(value))).max(axis=0) for value in self.breaks], axis=0)
+        size = np.abs(self.at(self.breaks)).max(axis=(0, 1))
         counts = (self.orders > 0) & (size > NEGLIGIBLE * size[self.orders > 0].max(initial=0.0))
         if not counts.any():
             raise ModelError("nothing but a mean torque acts", where="excitation", remedy="give orders above 0")

@@ -86,7 +86,7 @@ def _laid(branches: list[Branch], parts: list[ComplexArray], orders: Array) -> C
 def _mean_torques(explorer: Explorer, value: Array) -> Array:
     load = explorer.setting.load
     mean = load.orders == 0
-    return np.array([load.at(float(v))[:, mean].real.sum() for v in value])
+    return np.asarray(load.at(value)[..., mean].real.sum(axis=(-2, -1)))
 
 
 def _stability(branches: list[Branch]) -> dict[str, Variable]:

@@ -152,6 +152,20 @@ class HarmonicProblem:
         harmonic_parts(balance, value, speed, g, dg, b, db)
         return b[0].real, np.abs(b[1:]).max(axis=0)
 
+    def resting(self, value: float) -> Array | None:
+        """Mean angles (m,) [rad] under the mean torque alone, by the balance of harmonic 0; None where that fails."""
+        m, balance = self.connections, self.frozen(value).balance
+        if balance.remembers.any():
+            return None
+        scale = np.append(self.scale[:m], self.scale[-1])
+        still = balance._replace(table=np.ones((1, 1)), scale=scale)
+        b, db = np.zeros((1, m), dtype=complex), np.zeros((1, m), dtype=complex)
+        static_part(balance, value, b, db)
+        guess, normal = np.append(b[0].real, value) / scale, np.zeros(m + 1)
+        normal[-1] = 1.0
+        z, *_, converged, _ = corrected(still, guess, normal, 0)
+        return np.asarray(z[:m] * scale[:m]) if converged else None
+
     def harmonics_of(self, z: Array) -> ComplexArray:
         """Complex 0-peak harmonics (…, m, H + 1) of the relative angles [rad] of scaled points (…, n + 1)."""
         m, count = self.connections, self.harmonics

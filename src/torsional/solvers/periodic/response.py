@@ -28,7 +28,7 @@ from torsional.system import System
 HIGHEST_ORDER = 18.0
 """Highest order of the harmonics that are taken by default; those of a stage's torque fall with its cube."""
 
-SIZED = 9
+SIZED = 5
 """Values of the parameter at which the size of the angles is estimated."""
 
 _LOADS: dict[str, Callable[[Excitation], Load]] = {

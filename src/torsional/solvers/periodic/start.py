@@ -64,7 +64,8 @@ def static_angles(setting: Setting, value: float) -> Array:
 def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The static state; and the same moved by a tenth of the scale, for one that lies exactly on a corner."""
     setting = problem.frozen(value).setting
-    static = static_angles(setting, value)
+    resting = problem.resting(value)
+    static = static_angles(setting, value) if resting is None else resting
     for shift in (0.0, 0.1, -0.1):
         at = np.zeros((static.size, 1), dtype=complex)
         at[:, 0] = static + shift * setting.angle_scale

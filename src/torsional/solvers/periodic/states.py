@@ -70,7 +70,7 @@ def driving(problem: HarmonicProblem, value: Array) -> ComplexArray:
     system, load = setting.split.system, setting.load
     onto = np.array([system.T[system.node_index(node)] for node in load.nodes])
     orders = problem.base_order * np.arange(problem.harmonics + 1)
-    at = np.stack([load.at(float(p)) for p in value])
+    at = load.at(value)
     picked = np.zeros((len(value), len(orders), len(load.nodes)), dtype=complex)
     for h, n in enumerate(orders):
         same = np.flatnonzero(np.abs(load.orders - n) < 1e-9)
