@@ -24,7 +24,7 @@ from torsional.cli.periodic_tables import (
     motion_tables,
     places_of,
 )
-from torsional.cli.spans import asked, quantity_at
+from torsional.cli.spans import Span, asked, quantity_at
 from torsional.cli.subharmonic import tables
 from torsional.errors import ModelError
 from torsional.files import load_model
@@ -360,8 +360,24 @@ def test_what_lies_above_full_load_is_not_told() -> None:
     assert "though there is some above it" in str(tables(nothing, "Order 1.5")[0].rows)
 
 
-def test_ranges_without_a_stable_motion_are_warned_of(torsional: Run) -> None:
-    """Where the range begins and ends inside of the region, the branch that is stable there begins nowhere in it."""
+# --- what is warned of ---
+
+
+def test_ranges_without_a_stable_motion_are_warned_of(result: xr.Dataset, capsys: pytest.CaptureFixture[str]) -> None:
+    span = Span("speed", "speed", 50.0, 150.0)
+    torsional.cli.periodic.warn_unsettled(result, span)
+    assert capsys.readouterr().err == ""
+    main = result.isel(point=result.branch.values == 0, bifurcation=result.on_branch.values == 0)
+    ends = f"from {90 / RPM:.5g} rpm to {110 / RPM:.5g} rpm"
+    torsional.cli.periodic.warn_unsettled(main, span)
+    assert capsys.readouterr().err.startswith(f"warning: no stable periodic motion was found {ends}; a wider range")
+    torus = main.assign(bifurcation_type=("bifurcation", np.full(main.sizes["bifurcation"], "Neimark–Sacker")))
+    torsional.cli.periodic.warn_unsettled(torus, span)
+    assert "a frequency there that is no order of the engine" in capsys.readouterr().err
+
+
+def test_a_branch_that_crosses_the_whole_range_is_found(torsional: Run) -> None:
+    """Inside of the region neither end of the doubled branch is in sight."""
     told = torsional("periodic", STAGED, "--speed", "880:940rpm", "--torque", "1200Nm")
-    assert told.code == 0
-    assert told.err.startswith("warning: no stable periodic motion was found from 880 rpm to 940 rpm; a wider")
+    assert (told.code, told.err) == (0, "")
+    assert "880 to 940" in told.out and "623.2" in told.out

@@ -84,7 +84,7 @@ def run(
     if chosen is not None and span.name not in ("speed", "mean_torque"):
         machine = changed(machine, {span.name: chosen})  # the motions are those of the changed model
         laws = laws_of(machine, engaged)
-    _warn_unsettled(data, span)
+    warn_unsettled(data, span)
     place = f"{in_gear(engaged)}, {span.told}"
     told = "" if chosen is None else show(chosen, span.quantity) + place
     motions = None if chosen is None else solutions_at(data, chosen)
@@ -107,7 +107,7 @@ def run(
     deliver(Answer("periodic", _tables(view), document, kept, data, lambda: _picture(view)), request)
 
 
-def _warn_unsettled(data: xr.Dataset, span: Span) -> None:
+def warn_unsettled(data: xr.Dataset, span: Span) -> None:
     """Say where the machine must do something else than what was found."""
     at = data.bifurcation_value.values[data.bifurcation_type.values == "Neimark–Sacker"]
     for low, high in without_stable(data):
