@@ -222,8 +222,10 @@ def balanced(case: Case, speed: float, q: np.ndarray, step: float = 1.0, samples
             jacobian += np.einsum("ij,a,b->iajb", slope, w, w)
         change = np.linalg.solve(jacobian.reshape(z.size, z.size), rest.ravel()).reshape(z.shape)
         z -= change
-        if np.abs(change).max() <= 1e-13 * np.abs(z).max():
+        if np.abs(change).max() <= 1e-12 * np.abs(z).max():
             break
+    else:
+        raise RuntimeError("the judge's Newton method does not converge")
     out = z[:count].astype(complex)
     out[1:] += 1j * z[count:]
     return out
@@ -265,7 +267,7 @@ def stop_machine() -> Machine:
     return Machine({"first": 1.0, "second": 1.0}, springs, laws, torques={"second": {1.0: 0.1}})
 
 
-def three_laws(mean: float = 300.0, third: float = 500.0, grounded: bool = True) -> Machine:
+def three_laws(mean: float = 100.0, third: float = 2500.0, grounded: bool = True) -> Machine:
     """Dual mass flywheel, clutch stages and a gear's lash in one line."""
     clutch = Stages((-0.05, -0.004, 0.004, 0.02), (3e3, 6e3, 1e3, 6e3, 2e4))
     lash = Stages((-0.002, 0.002), (2e5, 0.0, 2e5))
@@ -274,7 +276,7 @@ def three_laws(mean: float = 300.0, third: float = 500.0, grounded: bool = True)
     if grounded:
         springs["road"] = ("ground", "vehicle", 500.0, 50.0)
     laws = {
-        "dmf": ("secondary", "engine", DMF, 12.0),
+        "dmf": ("secondary", "engine", Stages((-0.03, 0.03), (25e3, 8e3, 25e3)), 12.0),
         "clutch": ("input", "secondary", clutch, 6.0),
         "lash": ("output", "input", lash, 4.0),
     }
@@ -282,7 +284,7 @@ def three_laws(mean: float = 300.0, third: float = 500.0, grounded: bool = True)
     return Machine(discs, springs, laws, torques=torques, hold="vehicle")
 
 
-def geared(mean: float = 400.0, third: float = 900.0) -> Machine:
+def geared(mean: float = 300.0, third: float = 4000.0) -> Machine:
     """Dual mass flywheel before a gear pair of 1 : 2.5 with lash on its slow side, no link to ground."""
     lash = Stages((-0.004, 0.004), (3e5, 0.0, 3e5))
     return Machine(
@@ -293,6 +295,27 @@ def geared(mean: float = 400.0, third: float = 900.0) -> Machine:
         {"engine": {0.0: mean, 3.0: third}},
         "vehicle",
     )
+
+
+def thirty_nodes(mean: float = 100.0, third: float = 4000.0) -> Machine:
+    """A line of thirty discs with a dual mass flywheel and a gear's lash in it."""
+    names = [f"d{i}" for i in range(30)]
+    inertias = [*[0.08] * 8, 1.2, 0.6, *[0.05] * 10, *[0.2] * 9, 120.0]
+    springs = {f"s{i}": (names[i + 1], names[i], 8e5 if i < 8 else 2e5, 6.0) for i in range(29) if i not in (8, 19)}
+    springs |= {"s28": ("d29", "d28", 8e3, 30.0), "road": ("ground", "d29", 800.0, 10.0)}
+    laws = {
+        "dmf": ("d9", "d8", DMF, 14.0),
+        "lash": ("d20", "d19", Stages((-0.004, 0.004), (1.5e5, 0.0, 1.5e5)), 6.0),
+    }
+    torques = {f"d{i}": {0.0: mean / 6, 3.0: third / 6} for i in range(1, 7)}
+    return Machine(dict(zip(names, inertias, strict=True)), springs, laws, torques=torques, hold="d29")
+
+
+def clutch_machine(mean: float = 60.0, third: float = 2500.0) -> Machine:
+    """Dual mass flywheel and the stages of a clutch disc."""
+    line = three_laws(mean, third)
+    springs = dict(line.springs) | {"gear": ("output", "input", 4e5, 5.0)}
+    return replace(line, springs=springs, laws={name: line.laws[name] for name in ("dmf", "clutch")})
 
 
 def rpm(speed: float) -> float:
