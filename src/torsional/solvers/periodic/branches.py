@@ -110,13 +110,11 @@ class Explorer:
             number += 1
 
     def main(self) -> None:
-        """The main branch from the lower end of the span; from the upper end too where the first does not get there."""
+        """The main branches from both ends of the span, which mostly are one and the same."""
         problem = self.problem(self.base_order)
         low, high = self.span
         failed: list[ModelError] = []
         for value, direction in ((low, 1), (high, -1)):
-            if self.branches and high in self.branches[0].values[[0, -1]]:
-                break
             try:
                 start = first_solution(problem, value)
             except ModelError as error:
