@@ -32,7 +32,7 @@ _HOMES = {
     "solvers.modal": "damped_modes modal",
     "solvers.map": "response_map",
     "solvers.operating": "operated",
-    "solvers.periodic": "Variation model_response periodic_response subharmonic_boundary subharmonic_map "
+    "solvers.periodic": "Load Variation model_response periodic_response subharmonic_boundary subharmonic_map "
     "varied_response",
     "solvers.run_up": "full_load_response run_up_response",
     "stamps": "Connection Constraint Mass SpeedSwitch",

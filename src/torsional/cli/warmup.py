@@ -16,14 +16,19 @@ from torsional.cli.answers import print_json
 from torsional.cli.documents import amount, json_text
 from torsional.cli.progress import progress
 from torsional.cli.tables import Column, Table, print_tables
+from torsional.components import Component, Coupling, Inertia
+from torsional.engine import Excitation
 from torsional.files import changed, load_model, starter
 from torsional.model import RPM, Model
 from torsional.numerics.callbacks import address_of
+from torsional.powertrain import Powertrain
 from torsional.solvers.campbell import campbell
 from torsional.solvers.map import HALF_ORDERS, response_map
-from torsional.solvers.periodic import model_response, subharmonic_map
+from torsional.solvers.periodic import model_response, periodic_response, subharmonic_map
+from torsional.system import assemble
 
 Step = tuple[str, Callable[[], object]]
+_STAGES = laws.Hinges(1.0, (1.0,), (1.0,), (1.0,))
 
 
 def run(as_json: bool, quiet: bool) -> None:
@@ -63,6 +68,9 @@ def steps(model: Model) -> Iterator[Step]:
     yield "map", lambda: maps.reduced(response_map(model, speeds, torques, [gear]), model)
     yield "laws", _laws
     yield "periodic", lambda: _periodic(model)
+    yield "isolated", lambda: _one_disc(_STAGES, isolated=True)
+    yield "smooth", lambda: _one_disc(laws.Polynomial((1.0, 0.0, 0.5)))
+    yield "friction", lambda: _one_disc(_STAGES, laws.Jenkins(0.1, 1.0))
 
 
 def _periodic(model: Model) -> None:
@@ -78,6 +86,15 @@ def _periodic(model: Model) -> None:
     span = (800 * RPM, 1000 * RPM)
     model_response(staged, span, 1200.0)
     subharmonic_map(staged, np.linspace(*span, 5), (1150.0, 1250.0))
+
+
+def _one_disc(*beside: laws.Law, isolated: bool = False) -> None:
+    """Branches of one disc on springs beside each other: the kernels that `_periodic` does without."""
+    parts: dict[str, Component] = {"disc": Inertia(1.0)}
+    parts |= {f"spring{i}": Coupling("ground", "disc", law, damping=0.04) for i, law in enumerate(beside)}
+    system = assemble(Powertrain(parts))
+    drive = Excitation(("disc",), np.array([0.0, 1.0]), np.array(1.0), np.ones((1, 2), dtype=complex))
+    periodic_response(system, drive, (2.0, 2.5), highest_order=3.0, isolated=isolated)
 
 
 def _laws() -> None:
