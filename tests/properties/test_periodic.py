@@ -49,6 +49,22 @@ def with_law(net: Network, number: int, law: Law) -> dict[str, Component]:
     return parts
 
 
+def dense_error(plain: System, speed: float, expected: xr.Dataset) -> float:
+    """How far a dense solve of the linear equations is off: the balance, which has such solves in it, is no better.
+
+    1e-10 is met by all but the harshest networks (springs of 1e9 Nm/rad far above their resonance).
+    """
+    c, worst = plain.connections, 0.0
+    for order, torque in ((1.0, 1.0), (2.0, 0.5j)):
+        omega = order * speed
+        z = plain.K + 1j * (omega * plain.C + plain.H) + speed**2 * plain.S - omega**2 * plain.M
+        q = np.linalg.solve(z, torque * plain.T[plain.node_index("n0")])
+        got = (c.stiffness * (1 + 1j * c.loss_factor) + 1j * omega * c.damping) * (c.weights @ q)
+        want = expected.torque.sel(order=order).isel(speed=0).values
+        worst = max(worst, float(np.abs(got - want).max() / np.abs(want).max()))
+    return worst
+
+
 @settings(max_examples=60)
 @given(networks, seeds, shares, st.sampled_from(["stages", "no gap", "polynomial"]))
 def test_equal_stages_are_harmonic_response(net: Network, seed: int, share: float, kind: str) -> None:
@@ -72,7 +88,8 @@ def test_equal_stages_are_harmonic_response(net: Network, seed: int, share: floa
         want = expected[quantity].sel(over).isel(speed=0)
         if quantity == "torque":
             got = got.sel(element=want.element.values)
-        assert (np.abs(got.values - want.values) <= 1e-10 * np.abs(want.values).max(axis=1, keepdims=True)).all()
+        error = np.abs(got.values - want.values).max(axis=1) / np.abs(want.values).max(axis=1)
+        assert (error <= max(1e-10, 10 * dense_error(plain, speed, expected))).all()
     assert not np.abs(x.twist.sel(order=[0.0, 3.0, 4.0]).values).max() > 1e-12 * np.abs(x.twist.values).max()
 
 

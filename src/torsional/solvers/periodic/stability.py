@@ -28,13 +28,29 @@ MARGIN = 1e-6
 """A multiplier counts as outside of the unit circle beyond this excess."""
 
 
-@lru_cache(maxsize=64)
-def stage_bases(split: Split) -> StageBases:
-    """The linear systems between the hinges, made once for all branches of a system whose laws are all hinges."""
+Turning = tuple[float, float]
+"""Mean speed and frequency of the base order [rad/s], where the linear part depends on them; else zeros."""
+
+
+def turning(split: Split, speed: float, pace: float) -> Turning:
+    """What the linear part depends on: centrifugal stiffness on the speed, hysteretic damping on the frequency."""
+    varies = bool(split.matrices[3].any() or split.matrices[4].any())
+    return (speed, pace) if varies else (0.0, 0.0)
+
+
+def _damping_and_stiffness(split: Split, at: Turning) -> tuple[Array, Array]:
+    """C and K without the references; hysteretic damping as the viscous one of equal loss at the base frequency."""
     s = split.system.switched(split.speed)
-    w = split.weights
-    stiffness = s.K + split.speed**2 * s.S
-    return StageBases(s.M, s.C, stiffness, w, [law.parameters for law in split.laws], split.rigid_turning)
+    speed, pace = at
+    return s.C + (s.H / pace if pace else 0.0), s.K + speed**2 * s.S
+
+
+@lru_cache(maxsize=256)
+def stage_bases(split: Split, at: Turning = (0.0, 0.0)) -> StageBases:
+    """The linear systems between the hinges, made once for all branches of a system whose laws are all hinges."""
+    damping, stiffness = _damping_and_stiffness(split, at)
+    laws = [law.parameters for law in split.laws]
+    return StageBases(split.matrices[0], damping, stiffness, split.weights, laws, split.rigid_turning)
 
 
 def motion_at(harmonics: ComplexArray, tau: Array) -> Array:
@@ -75,8 +91,13 @@ def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
         found = [_sampled(problem, z, float(p)) for z, p in zip(points, pace, strict=True)]
         return ordered(np.linalg.eigvals(np.array(found)))
     times, stages = crossings_along(problem, points)
-    bases = stage_bases(problem.setting.split)
-    return multipliers(bases, [t / p for t, p in zip(times, pace, strict=True)], stages, 2 * np.pi / pace)
+    split = problem.setting.split
+    at = [turning(split, float(v), float(p)) for v, p in zip(speed, pace, strict=True)]
+    times = [t / p for t, p in zip(times, pace, strict=True)]
+    if len(set(at)) == 1:
+        return multipliers(stage_bases(split, at[0]), times, stages, 2 * np.pi / pace)
+    each = zip(at, times, stages, pace, strict=True)
+    return np.concatenate([multipliers(stage_bases(split, a), [t], [s], [2 * np.pi / p]) for a, t, s, p in each])
 
 
 def exact_motion(problem: HarmonicProblem, z: Array) -> PiecewiseMotion:
@@ -85,20 +106,24 @@ def exact_motion(problem: HarmonicProblem, z: Array) -> PiecewiseMotion:
     setting = problem.frozen(value).setting
     speed = value if setting.speed is None else setting.speed
     loads = driving(problem, np.array([value]))[0]
-    return PiecewiseMotion(stage_bases(setting.split), loads, problem.base_order * speed)
+    pace = problem.base_order * speed
+    return PiecewiseMotion(stage_bases(setting.split, turning(setting.split, speed, pace)), loads, pace)
 
 
-@lru_cache(maxsize=64)
-def _linear(split: Split, damped: bool) -> Coordinates:
+@lru_cache(maxsize=256)
+def _linear(split: Split, damped: bool, at: Turning) -> Coordinates:
     """Coordinates of the linear part with the reference springs in it, and the reference dampers if ``damped``."""
-    mass, damping, stiffness, _, lift = split.matrices
-    damping = damping if damped else split.system.C
-    return coordinates(mass, damping, stiffness + split.speed**2 * lift, split.weights, split.rigid_turning)
+    damping, stiffness = _damping_and_stiffness(split, at)
+    w = split.weights
+    drag = split.reference_damping if damped else np.zeros(len(w))
+    held = stiffness + (w.T * split.reference_stiffness) @ w
+    return coordinates(split.matrices[0], damping + (w.T * drag) @ w, held, w, split.rigid_turning)
 
 
 def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     """Monodromy matrix of one point where some law is smooth or remembers."""
     split = problem.setting.split
+    at = turning(split, pace / problem.base_order, pace)
     harmonics = problem.harmonics_of(z)
     tau = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
     angles = motion_at(harmonics, tau)
@@ -108,12 +133,12 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
         laws = [(law.address, np.asarray(law.parameters)) for law in split.laws]
         remembers = np.array([int(law.remembers) for law in split.laws])
         return monodromy_remembering(
-            _linear(split, False), laws, remembers, split.reference_stiffness, angles, rates, 2 * np.pi / pace
+            _linear(split, False, at), laws, remembers, split.reference_stiffness, angles, rates, 2 * np.pi / pace
         )
     told = [law.evaluate(a, r) for law, a, r in zip(split.laws, angles, rates, strict=True)]
     stiffness = np.stack([t[1] for t in told], axis=1) - reference[:, 0]
     damping = np.stack([t[2] for t in told], axis=1) - reference[:, 1]
-    return monodromy_sampled(_linear(split, True), stiffness, damping, 2 * np.pi / pace).matrix
+    return monodromy_sampled(_linear(split, True, at), stiffness, damping, 2 * np.pi / pace).matrix
 
 
 def with_hidden_events(

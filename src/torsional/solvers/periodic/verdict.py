@@ -21,6 +21,8 @@ from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers, exact_motion
 from torsional.solvers.periodic.states import states
 
+ANOTHER = 0.05
+"""Relative distance from the balance's motion beyond which the exact one found is another."""
 CLOSE = 0.02
 """Distance from ±1 within which a real multiplier may lie on either side."""
 
@@ -88,6 +90,6 @@ def _closed(problem: HarmonicProblem, z: Array) -> ComplexArray | None:
     except (ArithmeticError, ValueError):
         return None
     moved = float(np.abs(closed.state - start).max()) / max(float(np.abs(start).max()), 1e-300)
-    if not closed.converged or moved > 0.2:
+    if not closed.converged or moved > ANOTHER:
         return None
     return ordered(np.linalg.eigvals(closed.monodromy))
