@@ -65,7 +65,7 @@ def dense_error(plain: System, speed: float, expected: xr.Dataset) -> float:
     return worst
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(networks, seeds, shares, st.sampled_from(["stages", "no gap", "polynomial"]))
 def test_equal_stages_are_harmonic_response(net: Network, seed: int, share: float, kind: str) -> None:
     rng = np.random.default_rng(seed)
@@ -93,7 +93,7 @@ def test_equal_stages_are_harmonic_response(net: Network, seed: int, share: floa
     assert not np.abs(x.twist.sel(order=[0.0, 3.0, 4.0]).values).max() > 1e-12 * np.abs(x.twist.values).max()
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(seeds, st.sampled_from([Jenkins(0.0, 4e3), LuGre(4e3, 2.0, 1e-9, 1e-9, 1.0), None]))
 def test_no_friction_is_no_friction(seed: int, law: Law | None) -> None:
     """A washer without torque beside a spring changes nothing; a staged spring without lash is its plain spring."""
@@ -176,7 +176,7 @@ def assert_alike(one: xr.Dataset, two: xr.Dataset, tolerance: float, angle: floa
         np.testing.assert_allclose(bifurcations(one, name), bifurcations(two, name), rtol=1e-8)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(seeds)
 def test_sign(seed: int) -> None:
     machine = random_machine(np.random.default_rng(seed))
@@ -189,7 +189,7 @@ def test_sign(seed: int) -> None:
     assert_alike(answer(machine), answer(other), 1e-12, -1.0, -1.0)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(seeds)
 def test_order_and_direction_of_parts(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -210,7 +210,7 @@ def test_order_and_direction_of_parts(seed: int) -> None:
     assert_alike(one, two, 1e-11)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(seeds, st.integers(-4, 4))
 def test_unit_of_torque(seed: int, power: int) -> None:
     """Inertias, stiffnesses, dampings and torques times a power of four: not one bit of an angle changes."""
@@ -230,7 +230,7 @@ def test_unit_of_torque(seed: int, power: int) -> None:
     np.testing.assert_array_equal(one.torque.values * f, two.torque.values)
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(seeds, st.integers(-4, 4))
 def test_size_of_angles(seed: int, power: int) -> None:
     """Gaps and torques times one factor, and so are all angles."""
@@ -247,7 +247,7 @@ def test_size_of_angles(seed: int, power: int) -> None:
     np.testing.assert_array_equal(one.twist.values * f, two.twist.values)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(seeds)
 def test_unit_of_time(seed: int) -> None:
     """Twice the speed with a quarter of the inertia and half of the damping is the same path."""
@@ -264,7 +264,7 @@ def test_unit_of_time(seed: int) -> None:
     assert_alike(one, moved, 1e-11)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(seeds, st.floats(-3.0, 3.0))
 def test_origin_of_the_crank_angle(seed: int, turn: float) -> None:
     """Firing later by an angle turns every order by its number times that angle."""
@@ -278,7 +278,7 @@ def test_origin_of_the_crank_angle(seed: int, turn: float) -> None:
         np.testing.assert_allclose(bifurcations(one, name), bifurcations(two, name), rtol=1e-8)
 
 
-@settings(max_examples=20)
+@settings(max_examples=12)
 @given(seeds, st.floats(0.2, 5.0))
 def test_referring_through_a_gear(seed: int, ratio: float) -> None:
     """A flywheel behind a gear of ratio i, referred: J/i², k/i², c/i², torques/i, angles and gaps times i."""
