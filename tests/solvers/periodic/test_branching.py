@@ -1,4 +1,4 @@
-"""What leaves a branch, what hangs together with none: switching, mirror copies, isolas, tori, curves of two parameters."""
+"""What leaves a branch and what hangs together with none: switching, mirror copies, isolas, tori, two parameters."""
 
 from __future__ import annotations
 

@@ -77,8 +77,13 @@ class Split:
 
     @cached_property
     def reference_stiffness(self) -> Array:
-        """Reference springs (m,) [Nm/rad]: any positive value gives the same motions; the softest stage is taken."""
-        return np.array([_reference(law) for law in self.laws])
+        """Reference springs (m,) [Nm/rad]: any positive value gives the same motions; the softest stage is taken.
+
+        A law without slope at rest has none where springs beside it hold its ends together, and friction has none.
+        """
+        c = self.system.connections
+        apart = np.abs(self.weights @ null_vectors(c.weights[c.stiffness > 0])).max(axis=1, initial=0.0) > 1e-12
+        return np.array([_reference(law, bool(sole)) for law, sole in zip(self.laws, apart, strict=True)])
 
     @cached_property
     def reference_damping(self) -> Array:
@@ -176,7 +181,7 @@ class Split:
         return np.asarray(onto - np.outer(work @ along / (along @ along), held))
 
 
-def _reference(law: Law) -> float:
+def _reference(law: Law, sole: bool) -> float:
     """A stiffness of the law's own size: its softest stage that is not free, its slope near rest; none of friction."""
     if not law.carries_mean_torque:
         return 0.0
@@ -184,7 +189,9 @@ def _reference(law: Law) -> float:
         slopes = law.tangent(law._between())
         return float(slopes[slopes > 0].min(initial=np.inf)) if (slopes > 0).any() else 1.0
     slopes = np.asarray(law.tangent(np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 9)])))
-    return float(slopes[0] if slopes[0] > 0 else slopes.max(initial=0.0))
+    if slopes[0] > 0:
+        return float(slopes[0])
+    return float(slopes.max(initial=0.0)) if sole else 0.0
 
 
 def balance(
