@@ -89,7 +89,8 @@ class Split:
     def reference_damping(self) -> Array:
         """Reference dampers (m,) [Nms/rad], which keep undamped poles off the path."""
         w = self.weights
-        beside = np.einsum("mi,ij,mj->m", w, self.system.K, w) / np.square((w * w).sum(axis=1))
+        length = np.square((w * w).sum(axis=1))
+        beside = np.einsum("mi,ij,mj->m", w, self.system.K, w) / np.where(length > 0, length, 1.0)  # locked ends: 0
         return 0.02 / self.speed * np.where(self.reference_stiffness > 0, self.reference_stiffness, beside)
 
     @cached_property
