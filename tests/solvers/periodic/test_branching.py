@@ -195,3 +195,14 @@ def test_a_linear_system_and_a_missing_speed_are_refused_in_words() -> None:
         periodic_response(oscillator(two_stage()), driven(1.0), (1.0, 2.0), parameter="amplitude")
     with pytest.raises(ModelError, match="no such parameter"):
         periodic_response(oscillator(two_stage()), driven(1.0), (1.0, 2.0), parameter="torqe", speed=1.0)
+
+
+def test_points_asked_for_are_judged_alike_where_the_parameter_runs_backwards() -> None:
+    system = oscillator(Polynomial((1.0, 0.0, 0.1)), damping=0.05)
+    load = driven(0.18)
+    asked = periodic_response(system, load, (0.6, 1.6), highest_order=7, at=[1.2, 1.2 * (1 + 1e-15)])
+    there = np.flatnonzero(np.isclose(asked.value.values, 1.2, rtol=1e-12))
+    amplitude = np.abs(asked.twist.sel(element="spring", order=1).values[there])
+    assert len(there) == 3  # between the folds at 1.1157 and 1.2696
+    assert asked.stable.values[there][np.argsort(amplitude)].tolist() == [True, False, True]
+    assert asked.confirmed.values[there].all()

@@ -25,6 +25,7 @@ def refined(branch: Branch, values: ArrayLike) -> Branch:
     wanted = np.unique(np.asarray(values, dtype=float))
     if not wanted.size:
         return branch
+    wanted = wanted[np.append(True, np.diff(wanted) > 1e-9 * np.abs(wanted[1:]))]  # 940 rpm in two roundings is one
     points = list(branch.points[:1])
     for start, end in pairwise(branch.points):
         points += [*_between(branch, start, end, wanted), end]
@@ -43,6 +44,7 @@ def _between(branch: Branch, start: Point, end: Point, wanted: Array) -> Iterato
         found = branch.problem.at(guess, float(value))
         if found.converged and np.linalg.norm(found.z - guess) <= REACH * np.linalg.norm(step):
             arclength = start.arclength + share * (end.arclength - start.arclength)
-            tangent = found.tangent if found.tangent @ step > 0 else -found.tangent
-            told = found.values[: len(start.values)]
+            side = 1.0 if found.tangent @ step > 0 else -1.0  # the bordered determinant turns with the tangent
+            tangent, told = side * found.tangent, found.values[: len(start.values)].copy()
+            told[:1] *= side
             yield Point(found.z, tangent, told, float(value), arclength, found.iterations, found.residual)

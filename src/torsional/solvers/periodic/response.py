@@ -26,7 +26,7 @@ from torsional.solvers.periodic.varied import VariedProblem
 from torsional.system import System
 
 HIGHEST_ORDER = 18.0
-"""Highest order of the harmonics that are taken by default; those of a stage's torque fall with its cube."""
+"""Highest order of the harmonics that are taken by default; those of a stage's torque fall with its square."""
 
 SIZED = 5
 """Values of the parameter at which the size of the angles is estimated."""
