@@ -200,3 +200,18 @@ def test_undamped_duffing_has_both_of_its_branches() -> None:
     # one term: (1 − Ω²) a + ¾ γ a³ = F has three real solutions
     expected = np.sort(np.roots([0.075, 0.0, 1 - 2.0**2, -0.18]).real)
     assert np.sort(x) == pytest.approx(expected, rel=0.05)
+
+
+# --- nothing is told twice ---
+
+
+@pytest.mark.parametrize("name", ["ratio 50 with a mean", "mean at the corner", "stop", "bilinear", "thirty nodes"])
+def test_no_motion_is_told_twice(name: str) -> None:
+    """Neither the copy of a motion a period later, nor its mirror image, nor one branch on another: sizes tell them."""
+    machine, span, highest = HARD[name]
+    values = np.linspace(*span, 23)[1:-1] * 1.0001
+    data = respond(machine, span, highest_order=highest, depth=2, at=values, stability=False)
+    for value in values:
+        sizes = np.abs(picked(data, float(value)).twist.sel(element=list(machine.laws)).values)
+        apart = np.abs(sizes[:, None] - sizes[None]).max(axis=(2, 3)) + np.eye(len(sizes))
+        assert len(sizes) and apart.min() > 1e-6 * sizes.max()
