@@ -136,9 +136,10 @@ def read(branch: Branch, speeds: Array) -> tuple[Array, IntArray, IntArray]:
     """Where a branch passes the speeds: scaled guesses between its points, columns of speeds, numbers of stretches."""
     scaled, values = branch.scaled, speeds / branch.problem.scale[-1]
     start, end = scaled[:-1, -1], scaled[1:, -1]
-    low, high = np.minimum(start, end)[:, None], np.maximum(start, end)[:, None]
+    way = np.sign(end - start)[:, None]  # a stretch holds its start and not its end, whichever way it runs
     last = (np.arange(len(start)) == len(start) - 1)[:, None]
-    stretch, columns = np.nonzero((values >= low) & ((values < high) | (last & (values == high))))
+    behind, ahead = way * (values - start[:, None]), way * (end[:, None] - values)
+    stretch, columns = np.nonzero((behind >= 0) & ((ahead > 0) | (last & (way != 0) & (ahead == 0))))
     share = ((values[columns] - start[stretch]) / (end[stretch] - start[stretch]))[:, None]
     guesses = scaled[stretch] + share * (scaled[stretch + 1] - scaled[stretch])
     guesses[:, -1] = values[columns]
