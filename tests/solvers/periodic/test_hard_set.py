@@ -69,7 +69,9 @@ def assert_honest(machine: Machine, data: xr.Dataset, tolerance: float) -> None:
 
 HEAVY = (
     "ratio 50 about zero",
-    "no damping, smooth, from the resonance",
+    "no damping, smooth",
+    "three laws, no mean",
+    "steep play, no mean",
     "play, touched by the torque",
     "steep play, no mean, no damping",
     "steep play",
@@ -103,12 +105,11 @@ def test_just_below_and_just_above_the_gap(steeper: float) -> None:
     """Below its gap a spring is not there, to rounding; above, the answer departs with the depth to the power 3/2."""
     speed, damping = 0.8, 0.05
     machine = oscillator(Stages((linear_peak(speed, damping),), (1.0, 1.0 + steeper)), damping, {0.0: 0.0, 1.0: 1.0})
-    shares = np.array([-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1e-3])
-    data = respond(
-        machine, (0.9, 1.1), parameter="amplitude", speed=speed, highest_order=21.0, at=1 + shares, settings=SHORT
-    )
     exact = 1 / (1 - speed**2 + 1j * damping * speed)
-    for share in shares:
+    for share in (-1e-3, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1e-3):
+        data = respond(
+            machine, (0.9, 1.1), parameter="amplitude", speed=speed, highest_order=21.0, at=[1 + share], settings=SHORT
+        )
         at = picked(data, 1 + share).twist.sel(element="spring", order=1.0).values
         apart = np.abs(at - (1 + share) * exact)
         assert apart.min() <= (1e-13 if share <= 0 else 10 * steeper * share**1.5 + 1e-12)
