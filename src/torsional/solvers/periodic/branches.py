@@ -283,7 +283,7 @@ def _passes(branch: Branch, problem: HarmonicProblem, z: Array) -> bool:
             if distance[i] > np.sqrt(length[i]) + ALIKE:
                 continue
             found = problem.correct(guess[i], chord[i] / np.sqrt(length[i]))
-            if found.converged and np.abs(found.z - copy).max() <= ALIKE:
+            if found.converged and np.abs(found.z - copy).max() <= ALIKE * max(1.0, float(np.abs(copy).max())):
                 return True
     return False
 
