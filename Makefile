@@ -5,6 +5,8 @@ BENCH_VENV ?= .venv-bench
 PYHARM_VENV := $(BENCH_VENV)-pyharm
 # Worker processes of the test run; the default suits two cores.
 JOBS ?= 2
+# What `make bench` times: a folder or one of its files.
+BENCHMARKS ?= benchmarks
 BIN := $(VENV)/bin
 PIP_INSTALL := -m pip install --quiet --retries 10 --timeout 60 -c constraints.txt
 
@@ -52,7 +54,7 @@ examples: $(VENV)/.installed-run  ## check every model file and run every script
 check: lint types imports examples docs test  ## everything CI runs
 
 bench: $(BENCH_VENV)/.installed-bench $(PYHARM_VENV)/.tried  ## time this project beside its peers, in an environment of their own
-	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini benchmarks
+	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini $(BENCHMARKS)
 
 constraints:  ## pin anew: names and versions from a fresh environment, into constraints.txt
 	@$(check_python)
