@@ -91,7 +91,7 @@ def told_of_branch(found) -> dict:
         "speed": found.values / dmf12.RPM,
         "amplitude": float(abs(found.problem.harmonics_of(found.scaled)[0, 0, 1])),
         "doublings": doublings,
-        "multipliers": found.multipliers,
+        "multipliers": found.verdict.multipliers,
     }
 
 
