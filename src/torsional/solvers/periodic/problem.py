@@ -22,6 +22,8 @@ from torsional.solvers.periodic.load import Load
 BoolArray = NDArray[np.bool_]
 JOINED = "joined"
 MET = 40
+LANDED = 1e-9
+"""Share of the watched part nearest behind below which a correction has fallen onto the branch that was left."""
 TESTS = ("branch point", "period doubling")
 
 
@@ -212,6 +214,8 @@ class WatchedProblem:
             return found._replace(values=np.append(found.values, 0.0))
         part = found.z[self.watched]
         facing = self._facing(guess, normal)
+        if facing is not None and np.abs(part).max() < LANDED * np.abs(facing).max():
+            return found._replace(values=np.append(found.values, 0.0), converged=False)  # a shorter step may stay on it
         side = 1.0 if facing is None or float(facing @ part) >= 0 else -1.0
         self._met.append((found.z, side * part))
         return found._replace(values=np.append(found.values, side * float(np.sqrt(part @ part))))
