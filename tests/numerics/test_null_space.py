@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from torsional.numerics.null_space import eliminate, null_vectors, transformed
+from torsional.numerics.null_space import CANCELLED, eliminate, null_vectors, transformed
 
 
 def shafts(pairs: list[tuple[int, int]], nodes: int) -> np.ndarray:
@@ -126,7 +126,8 @@ def test_random_gear_trains_meet_their_conditions(seed: int) -> None:
         dense[i, list(row)] = list(row.values())
     size = np.abs(dense) @ np.abs(found.transform)
     assert len(found.independent) == nodes - len(rows)
-    assert np.all(np.abs(dense @ found.transform) <= 1e-13 * size)
+    # forty planetary sets in a row cancel: one train in five hundred is 1e-13 to 7e-13 off
+    assert np.all(np.abs(dense @ found.transform) <= CANCELLED * size)
     assert found.redundant == () and found.locked == ()
     np.testing.assert_array_equal(found.transform[list(found.independent)], np.eye(nodes - len(rows)))
 

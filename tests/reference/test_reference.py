@@ -16,9 +16,7 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import natural_frequencies
 from torsional.system import assemble
 
-CASES: list[dict[str, Any]] = json.loads(
-    gzip.decompress(Path(__file__).with_name("networks.json.gz").read_bytes())
-)
+CASES: list[dict[str, Any]] = json.loads(gzip.decompress(Path(__file__).with_name("networks.json.gz").read_bytes()))
 
 
 def network(case: dict[str, Any]) -> Network:

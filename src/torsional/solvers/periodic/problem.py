@@ -154,6 +154,21 @@ class HarmonicProblem:
         harmonic_parts(balance, value, speed, g, dg, b, db)
         return b[0].real, np.abs(b[1:]).max(axis=0)
 
+    def part_motion(self, value: float) -> Array:
+        """How far the ends of the connections (m,) move [rad] where harmonics are solved for one by one, else 0.
+
+        A spring that twists a millionth of that is resolved to some digits less than the others.
+        """
+        balance = self.frozen(value).balance
+        ends, nodes = np.abs(balance.weights), balance.weights.shape[1]
+        if balance.poles.size:
+            return np.zeros(len(ends))
+        shape, speed = (self.harmonics + 1, nodes), value if self.setting.speed is None else self.setting.speed
+        g, dg = np.zeros((*shape, nodes), dtype=complex), np.zeros((*shape, nodes), dtype=complex)
+        b, db = np.zeros(shape, dtype=complex), np.zeros(shape, dtype=complex)
+        harmonic_parts(balance._replace(weights=np.eye(nodes)), value, speed, g, dg, b, db)
+        return np.asarray(ends @ np.abs(b[1:]).max(axis=0))
+
     def resting(self, value: float) -> Array | None:
         """Mean angles (m,) [rad] under the mean torque alone, by the balance of harmonic 0; None where that fails."""
         m, balance = self.connections, self.frozen(value).balance

@@ -31,6 +31,9 @@ HIGHEST_ORDER = 18.0
 SIZED = 5
 """Values of the parameter at which the size of the angles is estimated."""
 
+RESOLVED = 1e-5
+"""Share of the motion of its ends below which a twist is given to fewer digits."""
+
 _LOADS: dict[str, Callable[[Excitation], Load]] = {
     "speed": Load.over_speed,
     "mean_torque": Load.over_mean_torque,
@@ -193,8 +196,10 @@ def _refuse_switch(system: System, low: float, high: float, speed: float | None)
 
 
 def _angle_scale(problem: HarmonicProblem, span: tuple[float, float]) -> Array:
-    """Sizes of the angles (m,) to be expected: static twist, linear response, the nearest hinge."""
-    sizes = [np.abs(part) for value in np.linspace(*span, SIZED) for part in problem.linear_size(float(value))]
+    """Sizes of the angles (m,) to be expected: static twist, linear response, the nearest hinge, what is resolved."""
+    values = [float(value) for value in np.linspace(*span, SIZED)]
+    sizes = [np.abs(part) for value in values for part in problem.linear_size(value)]
+    sizes += [RESOLVED * problem.part_motion(value) for value in values]
     sizes.append(np.array([_nearest_hinge(law) for law in problem.setting.split.laws]))
     size = np.max(sizes, axis=0)
     return np.where(size > 0, size, size.max(initial=0.0) or 1.0)
