@@ -38,10 +38,10 @@ class Connected(NamedTuple):
     ``law_start[e]`` on, and a memory where it ``remembers``.  Where ``load_place`` ≥ 0 that value is the normal
     load N of the law and follows
 
-        N_e = max(0, load_constant_e level(t) + load_centrifugal_e Ω² + Σ_j load_share_j |torque of connection load_of_j|)
+        N_e = max(0, load_constant_e level(t) + load_centrifugal_e Ω² + Σ_j load_share_j |torque of load_of_j|)
 
-    with the level ``load_level_e`` of `Driven` (−1: one): a clutch that engages.  Torques of connections are those of their
-    springs, hinges and dampers.
+    with the level ``load_level_e`` of `Driven` (−1: one): a clutch that engages.  ``load_of`` are connections, their
+    torques those of springs, hinges and dampers.
     """
 
     rows: Rows
