@@ -73,15 +73,17 @@ class Driven(NamedTuple):
     phase_s.
 
     φ_f(t) = ∫ frame speed dt is the angle of the frame, ``multiple`` the source's speed over that of the reference
-    node, ``feedback`` 1 where the part's own motion moves the events and 0 where they keep to the mean rotation.
+    node, ``feedback`` 1/(r_s·1) where the part's own motion moves the events (r_s·1 is ``multiple`` for a row of the
+    part's own angle) and 0 where they keep to the mean rotation.
     Profile p is periodic in 2π ``period[p]``: cubic pieces, evenly spaced, ``profile[profile_start[p] + i]`` =
     coefficients (4,), lowest power first, of the share of the interval.  ``profile_of`` −1 is a profile of one.
     Level p is linear between knots ``level_time``, ``level_value`` from ``level_start[p]`` on and constant beyond;
     ``level_of`` −1 is a level of one.
 
-    Cranks m with a reciprocating mass, exactly: at ``crank_row`` the torque −m x'(x'' θ̇² + x' θ̈) with crank
-    angle as above (``crank_phase``), ``crank_mass``, ``crank_radius``, ``crank_rod``, ``crank_offset``, less what
-    of it is an inertia already (``crank_included`` [kgm²]).
+    Cranks m with a reciprocating mass, exactly: along ``crank_rows`` the torque −m x'(x'' θ̇² + x' θ̈) with the
+    crank's angle θ = crank_multiple φ_f + r_m·q + ``crank_phase`` (r_m·1 is the multiple), ``crank_mass``,
+    ``crank_radius``, ``crank_rod``, ``crank_offset``, less what of it is an inertia already (``crank_included``
+    [kgm²]).
     """
 
     rows: Rows
