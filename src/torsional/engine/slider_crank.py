@@ -18,6 +18,7 @@ from torsional.engine.orders import (
     picked,
 )
 from torsional.errors import ModelError
+from torsional.numerics.crank_kinematics import piston_position, piston_ratios
 
 
 @dataclass(frozen=True)
@@ -70,28 +71,21 @@ class SliderCrank:
         r, l, e = self.crank_radius, self.rod_length, self.pin_offset
         return math.pi + math.asin(e / (l - r)) - math.asin(e / (r + l))
 
-    def _parts(self, crank_angle: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        r, l, e = self.crank_radius, self.rod_length, self.pin_offset
-        psi = np.asarray(crank_angle, dtype=float) + math.asin(e / (r + l))
-        up, across = r * np.cos(psi), r * np.sin(psi)
-        s = (across - e) / l
-        return up, across, s, np.sqrt(1.0 - s * s)
-
     def position(self, crank_angle: ArrayLike) -> FloatArray:
         """Way of the piston below top dead centre x(θ) [m]."""
-        up, _, _, c = self._parts(crank_angle)
-        top = math.sqrt((self.crank_radius + self.rod_length) ** 2 - self.pin_offset**2)
-        return np.asarray(top - up - self.rod_length * c)
+        return np.asarray(piston_position(*self._lengths, np.asarray(crank_angle, dtype=float)))
 
     def velocity_ratio(self, crank_angle: ArrayLike) -> FloatArray:
         """x'(θ) = dx/dθ [m/rad]."""
-        up, across, s, c = self._parts(crank_angle)
-        return np.asarray(across + up * s / c)
+        return np.asarray(piston_ratios(*self._lengths, np.asarray(crank_angle, dtype=float))[0])
 
     def acceleration_ratio(self, crank_angle: ArrayLike) -> FloatArray:
         """x''(θ) = d²x/dθ² [m/rad²]."""
-        up, across, s, c = self._parts(crank_angle)
-        return np.asarray(up - across * s / c + up * up / (self.rod_length * c**3))
+        return np.asarray(piston_ratios(*self._lengths, np.asarray(crank_angle, dtype=float))[1])
+
+    @property
+    def _lengths(self) -> tuple[float, float, float]:
+        return self.crank_radius, self.rod_length, self.pin_offset
 
     def inertia(self, reciprocating_mass: float, crank_angle: ArrayLike) -> FloatArray:
         """Angle-dependent inertia of the reciprocating mass m x'(θ)² [kg m²]."""
