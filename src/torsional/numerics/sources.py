@@ -206,7 +206,7 @@ def periodic_profile(values: ArrayLike) -> Array:
 
 
 def packed_profiles(profiles: Sequence[tuple[ArrayLike, float]]) -> tuple[IntArray, Array, Array]:
-    """``profile_start``, ``profile``, ``period`` of `Driven` from samples and periods in turns of 2π, one pair a profile.
+    """``profile_start``, ``profile``, ``period`` of `Driven` from samples and periods in turns of 2π, by pairs.
 
     >>> start, table, period = packed_profiles([([0.0, 1.0, 0.0, -1.0], 2.0), ([1.0, 0.0, 0.0], 1.0)])
     >>> start.tolist(), table.shape, period.tolist()
