@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from torsional.errors import ModelError
 from torsional.laws import Law
 
 GROUND = "ground"
@@ -44,11 +46,61 @@ class Mass:
 
 
 @dataclass(frozen=True, slots=True)
+class NormalLoad:
+    """The load that presses two rubbing parts together, N = max(0, constant level(t) + centrifugal Ω² + Σ share |T|).
+
+    ``constant`` [N], times the ``level`` over time of that name where one is named (a clutch that engages; without it,
+    and in frequency-domain analyses, one); ``centrifugal`` m r [kg m] times the squared speed of the node ``carrier``
+    (default: the reference node); ``shares`` {connection: newtons per Nm of its |torque|}, the torques of springs,
+    hinges and dampers.  In time N follows speed and torques at every instant.  A linear analysis takes it at the mean
+    torque, and at each mean speed (its damping at standstill); a periodic one at one speed, see `System.loaded`.
+    Raises ModelError unless all are finite and some load there is.
+
+    >>> NormalLoad(centrifugal=0.02, shares={"arc1": 0.5}).at(100.0, {"arc1": -40.0})
+    220.0
+    """
+
+    constant: float = 0.0
+    centrifugal: float = 0.0
+    shares: Mapping[str, float] | tuple[tuple[str, float], ...] = ()
+    carrier: str = ""
+    level: str = ""
+
+    def __post_init__(self) -> None:
+        shares = tuple((name, float(share)) for name, share in dict(self.shares).items())
+        object.__setattr__(self, "shares", shares)
+        values = (self.constant, self.centrifugal, *(share for _, share in shares))
+        if not all(math.isfinite(value) for value in values):
+            raise ModelError("a normal load is finite", where="load", found=repr(values))
+        if not any(values):
+            raise ModelError("the normal load is nought", where="load", remedy="give constant, centrifugal or shares")
+
+    @property
+    def share_of(self) -> dict[str, float]:
+        """The shares by connection."""
+        return dict(self.shares)
+
+    @property
+    def follows(self) -> bool:
+        """Whether it changes in time."""
+        return bool(self.centrifugal or self.shares or self.level)
+
+    def at(self, speed: float, torque: Mapping[str, float]) -> float:
+        """N [N] at a speed [rad/s] of the carrier and torques {connection: Nm}, its level one."""
+        pressed = sum(share * abs(torque[name]) for name, share in self.share_of.items())
+        return max(0.0, self.constant + self.centrifugal * speed**2 + pressed)
+
+
+@dataclass(frozen=True, slots=True)
 class Connection:
     """Torque k (1 + iη) w·θ + c w·θ̇ + Ω² s w·θ + law(w·θ, w·θ̇) acting along w.
 
     ``stiffness`` k [Nm/rad], ``damping`` c [Nms/rad], ``loss_factor`` η [-] (in the frequency domain),
-    ``centrifugal_stiffness`` s [Nm s²/rad] times the squared mean speed of the node ``carrier``.
+    ``centrifugal_stiffness`` s [Nm s²/rad] times the squared mean speed of the node ``carrier``.  ``load``: the normal
+    load of a ``law`` that has one.  With ``whole_speed`` damper and law see the whole speed w·(θ̇ + mean rotation), as
+    a brake or a road load does; else the deviation from the mean rotation.  In the frequency domain, where mean losses
+    belong to the mean torque, such a law is left out.
+    Raises ModelError for a load beside a law that takes none.
     """
 
     name: str
@@ -59,6 +111,20 @@ class Connection:
     centrifugal_stiffness: float = 0.0
     carrier: str = ""
     law: Law | None = None
+    load: NormalLoad | None = None
+    whole_speed: bool = False
+
+    def __post_init__(self) -> None:
+        if self.load is None:
+            return
+        if self.law is None or self.law.load_place < 0:
+            found = "no law" if self.law is None else type(self.law).__name__
+            remedy = "laws with a normal_load, such as LuGre, take one"
+            raise ModelError("this law has no normal load", where=self.name, found=found, remedy=remedy)
+        own = float(self.law.parameters[self.law.load_place])
+        if own != 1.0:
+            remedy = "leave the law's normal_load at 1 where the connection has a load"
+            raise ModelError("the normal load is given twice", where=self.name, found=f"{own:g} N", remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)

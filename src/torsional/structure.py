@@ -163,7 +163,8 @@ def _referred(speed: Array, nodes: Sequence[str], reference: str) -> Array:
 
 
 def _damper(stamp: Connection) -> bool:
-    return stamp.law is None and not stamp.stiffness and not stamp.centrifugal_stiffness
+    bends = stamp.law is not None and not stamp.whole_speed  # a brake or a road load holds nothing in its place
+    return not bends and not stamp.stiffness and not stamp.centrifugal_stiffness
 
 
 def _rotation(modes: Array) -> Array:

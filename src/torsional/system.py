@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.numerics.arrays import Array
 from torsional.numerics.null_space import transformed
 from torsional.powertrain import Powertrain
-from torsional.stamps import Connection, Mass, SpeedSwitch
+from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch
 from torsional.structure import weight_rows
+
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +37,8 @@ class Connections:
     """Factored springs and dampers along w·q: ``weights`` (connections, coordinates) and one value a connection.
 
     ``stiffness`` [Nm/rad], ``damping`` [Nms/rad], ``loss_factor`` [-], ``centrifugal_stiffness`` [Nms²/rad] for the
-    squared speed of the reference node, ``laws`` (None where linear).
+    squared speed of the reference node, ``laws`` (None where linear), ``loads`` (None where constant: the law has
+    it), their ``centrifugal`` referred to that node too; ``whole_speed``: damper and law see the whole speed.
     """
 
     names: tuple[str, ...]
@@ -43,6 +48,8 @@ class Connections:
     loss_factor: Array
     centrifugal_stiffness: Array
     laws: tuple[Law | None, ...]
+    loads: tuple[NormalLoad | None, ...]
+    whole_speed: BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +116,10 @@ class System:
             c.loss_factor,
             c.centrifugal_stiffness,
         )
-        told = hashlib.sha256(repr((self.nodes, c.names, m.names, m.switches, c.laws)).encode())
+        named: tuple[object, ...] = (self.nodes, c.names, m.names, m.switches, c.laws)
+        if any(c.loads) or c.whole_speed.any():
+            named = (*named, c.loads, c.whole_speed.tolist())
+        told = hashlib.sha256(repr(named).encode())
         for array in values:
             told.update(array.tobytes())
         return told.hexdigest()[:16]
@@ -136,6 +146,27 @@ class System:
         )
         return dataclasses.replace(self, masses=masses)
 
+    def loaded(self, speed: float, torque: Mapping[str, float] | None = None) -> System:
+        """The system with every normal load settled at a mean ``speed`` [rad/s] of the reference node.
+
+        ``torque``: mean torques {connection: Nm} for loads that have shares of them, as an operating point has them.
+        Levels over time count as one.  Raises ModelError for shares of torques that are not given.
+        """
+        c, known, laws = self.connections, dict(torque or {}), list(self.connections.laws)
+        if not any(c.loads):
+            return self
+        for i, (law, load) in enumerate(zip(c.laws, c.loads, strict=True)):
+            if law is None or load is None:
+                continue
+            for name in load.share_of:
+                if name not in known:
+                    remedy = "give loaded(speed, torque) the mean torques, as those of an equilibrium"
+                    found = f"a share of the torque of '{name}'"
+                    raise ModelError("the normal load follows a torque", where=c.names[i], found=found, remedy=remedy)
+            laws[i] = law.loaded(load.at(speed, known))
+        settled = dataclasses.replace(c, laws=tuple(laws), loads=(None,) * len(laws))
+        return dataclasses.replace(self, connections=settled)
+
 
 def assemble(powertrain: Powertrain) -> System:
     """A powertrain as arrays: one loop over its stamps, rigid conditions eliminated.
@@ -154,6 +185,7 @@ def assemble(powertrain: Powertrain) -> System:
     def reduced(chosen: list[Mass] | list[Connection]) -> Array:
         return _balanced(transformed(weight_rows(chosen, structure.nodes), structure.transform))
 
+    loads = [_referred(c, connections, ratio) for c in connections]
     return System(
         structure.nodes,
         structure.coordinates,
@@ -172,9 +204,35 @@ def assemble(powertrain: Powertrain) -> System:
             np.array([c.damping for c in connections]),
             np.array([c.loss_factor for c in connections]),
             np.array([c.centrifugal_stiffness * ratio.get(c.carrier, 1.0) ** 2 for c in connections]),
-            tuple(c.law for c in connections),
+            tuple(_pressed(c) for c in connections),
+            tuple(loads),
+            np.array([c.whole_speed for c in connections], dtype=bool),
         ),
     )
+
+
+def _pressed(own: Connection) -> Law | None:
+    """The law of one connection, with its normal load where that is constant."""
+    if own.law is None or own.load is None or own.load.follows:
+        return own.law
+    return own.law.loaded(own.load.at(0.0, {}))
+
+
+def _referred(own: Connection, connections: list[Connection], ratio: Mapping[str, float]) -> NormalLoad | None:
+    """The load of one connection over the reference node's speed; None where the law may have it for good."""
+    if own.load is None or not own.load.follows:
+        return None
+    load, names = own.load, [c.name for c in connections]
+    for name in load.share_of:
+        if name not in names or name == own.name:
+            problem = "its normal load would follow itself" if name == own.name else f"there is no connection '{name}'"
+            raise ModelError(problem, where=f"{own.name}.load.shares", remedy=nearest(name, set(names) - {own.name}))
+    if load.carrier and load.carrier not in ratio:
+        raise ModelError(
+            f"there is no node '{load.carrier}'", where=f"{own.name}.load.carrier", remedy=nearest(load.carrier, ratio)
+        )
+    at = ratio.get(load.carrier, 1.0) ** 2
+    return dataclasses.replace(load, centrifugal=load.centrifugal * at, carrier="")
 
 
 def _balanced(rows: Array) -> Array:

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from torsional.components import checks
 from torsional.errors import ModelError
 from torsional.laws import Hinges, Law
-from torsional.stamps import Connection
+from torsional.stamps import Connection, NormalLoad
 
 
 @dataclass(frozen=True)
 class Coupling:
     """A force ``law`` between nodes ``a`` and ``b`` on φ = θ_b − θ_a, with viscous ``damping`` c [Nms/rad] beside it.
 
-    Laws that act together are couplings side by side: a friction washer beside a spring is one more.
+    Laws that act together are couplings side by side: a friction washer beside a spring is one more.  ``load``: the
+    normal load of a friction law that has one.  With ``whole_speed`` law and damper see the whole speed of b over a, as
+    a brake to the ground does, instead of the deviation from the mean rotation.
 
     >>> from torsional.laws import Hinges
     >>> next(Coupling("primary", "secondary", Hinges(13e3), damping=20).stamps("springs")).stiffness
@@ -26,6 +29,8 @@ class Coupling:
     b: str
     law: Law
     damping: float = 0.0
+    load: NormalLoad | None = None
+    whole_speed: bool = False
 
     def __post_init__(self) -> None:
         checks.distinct(self.a, self.b)
@@ -33,11 +38,16 @@ class Coupling:
             remedy = "a plain spring is Hinges(stiffness); stages are Hinges.staged([(up to, stiffness), ...])"
             raise ModelError("a force law is wanted", where="law", found=repr(self.law), remedy=remedy)
         checks.not_negative(self.damping, "damping", "damping")
+        if self.load is not None and not isinstance(self.load, NormalLoad):
+            raise ModelError("a NormalLoad is wanted", where="load", found=repr(self.load))
+        for _ in self.stamps("load"):  # a load that the law cannot take is refused now
+            pass
 
     def stamps(self, name: str) -> Iterator[Connection]:
         """One connection along θ_b − θ_a; a law without hinges is a plain spring."""
         weights = {self.a: -1.0, self.b: 1.0}
+        more: dict[str, Any] = {"load": self.load, "whole_speed": bool(self.whole_speed)}
         if isinstance(self.law, Hinges) and not self.law.gaps:
-            yield Connection(name, weights, self.law.stiffness, float(self.damping))
+            yield Connection(name, weights, self.law.stiffness, float(self.damping), **more)
         else:
-            yield Connection(name, weights, damping=float(self.damping), law=self.law)
+            yield Connection(name, weights, damping=float(self.damping), law=self.law, **more)

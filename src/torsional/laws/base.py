@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self, cast
 
 import numba
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
+from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import RETURNED, address_of, law_at
 
@@ -76,6 +78,8 @@ class Law:
     carries_mean_torque: ClassVar[bool] = True
     departs: ClassVar[str] = "swings across a change of its stiffness, where the linear response is an approximation"
     """What it means that the law `changes_within` a swing, in words that follow the connection's name."""
+    load_place: ClassVar[int] = -1
+    """Place of the normal load among the parameters, of a law whose torque grows with one; −1 of any other."""
 
     @property
     def parameters(self) -> Array:
@@ -110,6 +114,18 @@ class Law:
         steps[:1] = 0.0
         torque, memories = self._run(_marched, _compiled_march, angles.size, angles, steps, float(memory))
         return torque, memories
+
+    def loaded(self, load: float) -> Self:
+        """The same law under a normal ``load`` [N]; raises ModelError where it has none.
+
+        >>> from torsional.laws import LuGre
+        >>> LuGre(1e5, 300.0, 1.0, 1.5, 0.001).loaded(20.0).normal_load
+        20.0
+        """
+        if self.load_place < 0 or not hasattr(self, "normal_load"):
+            raise ModelError("this law has no normal load", found=type(self).__name__)
+        law: Any = self
+        return cast("Self", dataclasses.replace(law, normal_load=float(load)))
 
     def _run(self, interpreted: Any, compiled: Any, size: int, *arguments: Any) -> Array:
         """One of two functions of the same body: for a few evaluations in Python, else by the kernel's address."""

@@ -106,6 +106,7 @@ class LuGre(Law):
     remembers: ClassVar[bool] = True
     carries_mean_torque: ClassVar[bool] = False
     departs: ClassVar[str] = "slips, where the linear response lets it stick"
+    load_place: ClassVar[int] = LOAD
 
     def __post_init__(self) -> None:
         for name, unit in (("bristle_stiffness", "Nm/rad"), ("sliding_torque", "Nm"), ("stribeck_rate", "rad/s")):

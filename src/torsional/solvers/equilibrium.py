@@ -109,9 +109,13 @@ def settled(system: System, load: Array) -> Array:
 
 
 def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) -> OperatingPoint:
-    """The tangents beside torques and angles (cases, connections), in the shape of the mean torques asked for."""
+    """The tangents beside torques and angles (cases, connections), in the shape of the mean torques asked for.
+
+    Normal loads are those of the mean torques at standstill; what speed adds is `with_load_stiffness`.
+    """
     c = system.connections
-    tangents = np.array([_forces(system, a)[1:] for a in angle])
+    pressed = [dict(zip(c.names, t, strict=True)) for t in torque]
+    tangents = np.array([_forces(system.loaded(0.0, p), a)[1:] for p, a in zip(pressed, angle, strict=True)])
     each = (torque, angle, tangents[:, 0], tangents[:, 1])
     torque, angle, stiffness, damping = (value.reshape(*shape, len(c.names)) for value in each)
     return OperatingPoint(c.names, torque, angle, stiffness, damping, c.laws)
@@ -124,13 +128,36 @@ def linearize(system: System, point: OperatingPoint) -> System:
     """
     if point.names != system.connections.names:
         raise ModelError("the operating point belongs to another system", found=", ".join(point.names[:8]))
-    c = system.connections
+    c = with_load_stiffness(system).connections
     plain = [law is None for law in c.laws]
     stiffness, damping = (
         np.where(plain, old, new) for old, new in ((c.stiffness, point.stiffness), (c.damping, point.damping))
     )
     connections = dataclasses.replace(c, stiffness=stiffness, damping=damping, laws=(None,) * len(point.names))
     return dataclasses.replace(system, connections=connections)
+
+
+def with_load_stiffness(system: System) -> System:
+    """The system in which the centrifugal normal loads of sticking friction are centrifugal stiffnesses.
+
+    The torque of bristles is N σ0 z, so that N = m r Ω² makes them a stiffness m r σ0 Ω².  Their damping stays that of
+    standstill.  Raises ModelError for a load that falls with speed.
+    """
+    c = system.connections
+    lift, loads, laws = c.centrifugal_stiffness.copy(), list(c.loads), list(c.laws)
+    for i, (law, load) in enumerate(zip(c.laws, c.loads, strict=True)):
+        if law is None or load is None or c.whole_speed[i] or not load.centrifugal:
+            continue
+        if load.centrifugal < 0:
+            remedy = "settle it at one speed: system.loaded(speed)"
+            raise ModelError("a normal load that falls with speed is no stiffness", where=c.names[i], remedy=remedy)
+        loose, pressed = (float(law.loaded(n).tangent(0.0)) for n in (0.0, load.centrifugal))
+        lift[i] += pressed - loose
+        rest = bool(load.constant or load.shares)
+        laws[i] = law if rest else law.loaded(0.0)
+        loads[i] = dataclasses.replace(load, centrifugal=0.0) if rest else None
+    taken = dataclasses.replace(c, centrifugal_stiffness=lift, loads=tuple(loads), laws=tuple(laws))
+    return dataclasses.replace(system, connections=taken)
 
 
 def _balanced(system: System, torques: Mapping[str, ArrayLike], hold: str) -> Array:
@@ -158,8 +185,10 @@ def _carrying(system: System) -> Array:
 
 def _without_friction(system: System) -> System:
     """The system without the laws that carry no mean torque."""
-    laws = tuple(law if law is not None and law.carries_mean_torque else None for law in system.connections.laws)
-    return dataclasses.replace(system, connections=dataclasses.replace(system.connections, laws=laws))
+    c = system.connections
+    pairs = zip(c.laws, c.whole_speed, strict=True)
+    laws = tuple(law if law and law.carries_mean_torque and not whole else None for law, whole in pairs)
+    return dataclasses.replace(system, connections=dataclasses.replace(c, laws=laws))
 
 
 def _take_along(system: System, angle: Array, carrying: Array) -> None:
@@ -222,7 +251,7 @@ def _forces(system: System, angle: Array) -> tuple[Array, Array, Array]:
     c = system.connections
     torque, tangent, damping = c.stiffness * angle, c.stiffness.copy(), c.damping.copy()
     for i, law in enumerate(c.laws):
-        if law is not None:
+        if law is not None and not c.whole_speed[i]:
             force, slope, drag = law.evaluate(angle[i])[:3]
             torque[i], tangent[i], damping[i] = torque[i] + force, tangent[i] + slope, damping[i] + drag
     return torque, tangent, damping

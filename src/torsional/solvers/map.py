@@ -13,6 +13,7 @@ from torsional.errors import ModelError, nearest
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
 from torsional.results import dataset
+from torsional.solvers.equilibrium import with_load_stiffness
 from torsional.solvers.harmonic import element_torques, response
 from torsional.solvers.operating import mean_state, torque_places
 from torsional.system import System, assemble
@@ -101,7 +102,7 @@ def _one_gear(
     loads: ComplexArray,
     places: tuple[list[str], list[str]],
 ) -> tuple[ComplexArray, ComplexArray, Array, StatusArray, Array]:
-    system = assemble(model.powertrain(gear))
+    system = with_load_stiffness(assemble(model.powertrain(gear)))
     state = mean_state(model, system, torques)
     values = {"stiffness": state.stiffness}
     if (state.damping != system.connections.damping).any():  # a law that damps at rest
@@ -129,7 +130,7 @@ def _elements(system: System, names: list[str]) -> list[int]:
 def _picked(system: System, index: list[int]) -> System:
     """The system with some of its connections only, for their torques."""
     c = system.connections
-    fields = ("weights", "stiffness", "damping", "loss_factor", "centrifugal_stiffness")
+    fields = ("weights", "stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
     rows = {key: getattr(c, key)[index] for key in fields}
-    names, laws = tuple(c.names[i] for i in index), tuple(c.laws[i] for i in index)
-    return dataclasses.replace(system, connections=dataclasses.replace(c, names=names, laws=laws, **rows))
+    rows |= {key: tuple(getattr(c, key)[i] for i in index) for key in ("names", "laws", "loads")}
+    return dataclasses.replace(system, connections=dataclasses.replace(c, **rows))

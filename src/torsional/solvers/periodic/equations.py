@@ -48,12 +48,24 @@ class Split:
                 allowed=allowed,
                 remedy="a linear system is a matter for harmonic_response" if not count else "replace some by springs",
             )
+        self._refuse_unsettled()
         if self.kin is not None:
             self.__dict__.update(
                 {name: getattr(self.kin, name) for name in ("reference_stiffness", "reference_damping")}
             )
             if self.system.shares_linear_part(self.kin.system):
                 self.__dict__.update({name: getattr(self.kin, name) for name in ("matrices", "poles", "rigid")})
+
+    def _refuse_unsettled(self) -> None:
+        """A periodic motion has one normal load for each law, and the deviation from the mean rotation alone."""
+        c = self.system.connections
+        for name, law, load, whole in zip(c.names, c.laws, c.loads, c.whole_speed, strict=True):
+            if load is not None:
+                remedy = "settle it at one speed: system.loaded(speed, mean torques)"
+                raise ModelError("the normal load follows speed, torque or time", where=name, remedy=remedy)
+            if whole and law is not None:
+                remedy = "leave it out: its mean is part of the mean torque"
+                raise ModelError("a law that sees the whole speed has no place here", where=name, remedy=remedy)
 
     @cached_property
     def places(self) -> tuple[int, ...]:

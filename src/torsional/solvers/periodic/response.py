@@ -77,6 +77,8 @@ def periodic_response(
     with order 0 as the mean, at one operating point or over speeds; ``hold``: the node that takes up the mean torque.
     Harmonics go up to ``highest_order``, in multiples of ``base_order`` (default: the largest that fits).
     ``depth``: how many times a branch may leave a branch.  Stability by Floquet multipliers where ``stability``.
+    Normal loads that follow the speed are settled at a given ``speed``; over speed, or where they follow torques, the
+    system wants ``loaded`` first.
     ``at``: values of the parameter at which every branch that passes them gets a point.
     ``isolated``: branches that hang together with none of these are sought as well, by continuation in torque and
     amplitude and from motions in time.
@@ -152,7 +154,7 @@ def explored(
         system, make = parameter.build(low), partial(VariedProblem, build=parameter.build)
     turning = 0.5 * (low + high) if speed is None else speed
     _refuse_switch(system, low, high, speed)
-    split = Split(system, turning)
+    split = Split(system if speed is None else system.loaded(speed), turning)
     fixed = None if parameter == "speed" else speed
     unit = low if low > 0.05 * high else max(abs(low), abs(high))
     setting = Setting(split, load, hold, fixed, highest_order, np.ones(len(split.laws)), unit, main_order=order)
