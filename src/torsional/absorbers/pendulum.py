@@ -146,21 +146,22 @@ def tuning_order(path: Path, order: float, distance: float, amplitude: float) ->
 def squared_distance(path: Path, order: float, distance: float, arc: float) -> float:
     """R²(s) [m²] of the pendulum from the axis at arc length s [m] along the path with ρ² = ρ0² − λ² s².
 
-    λ = 0 circle, 1 cycloid, n/sqrt(1 + n²) the epicycloid, which is the tautochrone R² = c² − n² s².
+    >>> round(squared_distance("tautochrone", 3.0, 0.1, 0.005), 9) == round(0.1**2 - 3.0**2 * 0.005**2, 9)
+    True
     """
-    from scipy.integrate import quad
+    from torsional.numerics.pendulum_path import path_at  # imported where used: it imports numba
 
-    rho = distance / (1 + order**2)
-    if path == "tautochrone":
-        return distance**2 - order**2 * arc**2
-    factor = {"circular": 0.0, "cycloid": 1.0, "epicycloid": order / math.sqrt(1 + order**2)}[path]
+    x, y, *_ = path_at(distance / (1 + order**2), flattening(path, order), distance, arc)
+    return float(x * x + y * y)
 
-    def direction(s: float) -> float:
-        return s / rho if factor == 0 else math.asin(factor * s / rho) / factor
 
-    along = quad(lambda s: math.cos(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
-    inwards = quad(lambda s: math.sin(direction(s)), 0.0, arc, epsabs=1e-15, epsrel=1e-12)[0]
-    return float(along**2 + (distance - inwards) ** 2)
+def flattening(path: Path, order: float) -> float:
+    """λ of a path: 0 circle, 1 cycloid, n/sqrt(1 + n²) the epicycloid, which is the tautochrone R² = c² − n² s².
+
+    >>> flattening("cycloid", 3.0)
+    1.0
+    """
+    return {"circular": 0.0, "cycloid": 1.0}.get(path, order / math.sqrt(1 + order**2))
 
 
 def with_pendulum(absorber: Absorber, pendulum: CentrifugalPendulum) -> Absorber:
