@@ -1,0 +1,1 @@
+"""Motion in time: a system and what drives it as arrays, stepped."""

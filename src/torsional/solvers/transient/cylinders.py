@@ -1,0 +1,131 @@
+"""The engine's cylinders as a drive in time: gas torque over the crank's own angle, reciprocating masses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from torsional.engine import Engine
+from torsional.engine.excitation import checked_nodes
+from torsional.engine.orders import crank_angle_grid
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.operating import torque_places
+from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
+from torsional.solvers.transient.drives import at_start
+from torsional.solvers.transient.profiles import Level, Profile, level_of, through
+from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.system import System
+
+RECIPROCATING = ("exact", "half-share", "none")
+SAMPLES = 2880
+"""Crank angles of one cycle at which the engine is asked: every quarter of a degree."""
+SQUARES = 33
+"""Knots of the square of a speed that changes."""
+ABOVE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class CylinderTorques:
+    """Cylinders of an ``engine`` on ``nodes`` (one a throw, or one for all) as they burn at a mean ``speed`` [rad/s]
+    and brake ``torque`` [Nm].
+
+    ``level`` over ``level_times`` [s] is the heat of combustion: 1 that of the operating point, 0 a motored engine
+    (with the intake pressure of no load), between them in proportion, friction with it.  ``feedback``: the crank's own
+    motion moves the events.  ``reciprocating``: "exact" gives −m x'(x'' θ̇² + x' θ̈) with the instantaneous speed, less
+    the half-share m r²/2 that is in the throw's inertia; "half-share" −m x' x'' Ω² at the mean speed, as in the
+    frequency domain; "none" leaves it out.  Raises ModelError for anything else, and as `Engine.operated` does.
+    """
+
+    engine: Engine
+    nodes: tuple[str, ...]
+    speed: float
+    torque: float
+    level: tuple[float, ...] = (1.0,)
+    level_times: tuple[float, ...] = (0.0,)
+    feedback: bool = True
+    reciprocating: str = "exact"
+
+    def __post_init__(self) -> None:
+        for name in ("level", "level_times"):
+            object.__setattr__(self, name, tuple(float(v) for v in np.atleast_1d(getattr(self, name))))
+        object.__setattr__(self, "nodes", checked_nodes(self.nodes, self.engine.layout.throw_count))
+        level_of(self.level_times, self.level, "level")
+        if self.reciprocating not in RECIPROCATING:
+            allowed = ", ".join(RECIPROCATING)
+            raise ModelError("unknown way", where="reciprocating", found=self.reciprocating, allowed=allowed)
+
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        speed: float,
+        torque: float,
+        *,
+        level: Sequence[float] = (1.0,),
+        level_times: Sequence[float] = (0.0,),
+        feedback: bool = True,
+        reciprocating: str = "exact",
+    ) -> CylinderTorques:
+        """The engine of a ``model`` on its throws."""
+        if model.engine is None:
+            remedy = "add an engine block"
+            raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy=remedy)
+        throws = torque_places(model).throws
+        given = tuple(level), tuple(level_times)
+        return cls(model.engine, throws, speed, torque, *given, feedback, reciprocating)
+
+    def acting(self, system: System, speed: SpeedProfile) -> Acting:
+        """Two sources a throw, motored and burnt; one crank a cylinder, or one more source a throw."""
+        rows = [row_of(system, node) for node in self.nodes]
+        gas = self._gas(rows)
+        found = Acting(gas, taken_up=at_start(Acting(gas)))
+        if self.reciprocating == "exact":
+            return found.joined(Acting(cranks=self._cranks(rows)))
+        if self.reciprocating == "half-share":
+            return found.joined(Acting(self._masses(rows, speed)))
+        return found
+
+    def profiles(self) -> tuple[tuple[Profile, ...], tuple[Profile, ...]]:
+        """Gas torque of each node less friction, motored, and what combustion adds to it."""
+        engine = self.engine
+        least = float(engine.motored_torque(self.speed))
+        motored, burning = (
+            self._summed(engine.torque(self.speed, torque, crank_angle_grid(SAMPLES), reciprocating=False))
+            for torque in (least + ABOVE * abs(least), self.torque)
+        )
+        return tuple(through(row, 2.0) for row in motored), tuple(through(row, 2.0) for row in burning - motored)
+
+    def _summed(self, torque: Array) -> Array:
+        return torque if len(self.nodes) > 1 else torque.sum(axis=0, keepdims=True)
+
+    def _gas(self, rows: Sequence[Array]) -> tuple[Source, ...]:
+        motored, burnt = self.profiles()
+        level = Level(np.array(self.level_times), np.array(self.level))
+        follows = float(self.feedback)
+        still = [Source(row, p, None, follows) for row, p in zip(rows, motored, strict=True)]
+        hot = [Source(row, p, level, follows, governed=True) for row, p in zip(rows, burnt, strict=True)]
+        return (*still, *hot)
+
+    def _cranks(self, rows: Sequence[Array]) -> tuple[Crank, ...]:
+        engine, crank = self.engine, self.engine.crank
+        mass = engine.reciprocating_mass
+        lengths = crank.crank_radius, crank.rod_length, crank.pin_offset
+        on = [rows[throw - 1 if len(rows) > 1 else 0] for throw in engine.layout.throws]
+        included = crank.half_share(mass)
+        firing = engine.layout.firing_angles
+        return tuple(Crank(row, -float(angle), mass, *lengths, included) for row, angle in zip(on, firing, strict=True))
+
+    def _masses(self, rows: Sequence[Array], speed: SpeedProfile) -> tuple[Source, ...]:
+        engine, alpha = self.engine, crank_angle_grid(SAMPLES)
+        throws = np.zeros((engine.layout.throw_count, SAMPLES))
+        for throw, firing in zip(engine.layout.throws, engine.layout.firing_angles, strict=True):
+            throws[throw - 1] += engine.crank.reciprocating_torque(engine.reciprocating_mass, 1.0, alpha - firing)
+        time = speed.crossings(np.linspace(*speed.range, SQUARES))
+        level = Level(time, speed.at(time) ** 2)
+        follows = float(self.feedback)
+        profiles = [through(torque, 2.0) for torque in self._summed(throws)]
+        return tuple(Source(row, p, level, follows) for row, p in zip(rows, profiles, strict=True))

@@ -1,0 +1,210 @@
+"""Where a run in time begins: at rest, in equilibrium, vibrating already, from another run or a periodic motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from torsional.engine import SliderCrank
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.null_space import null_vectors
+from torsional.solvers.equilibrium import settled
+from torsional.solvers.transient.acting import Acting, Crank, row_of
+from torsional.solvers.transient.profiles import Profile, through
+from torsional.system import System
+
+STARTS = "rest, equilibrium, vibrating, a State, a result of transient, of harmonic_response or of periodic_response"
+UNBALANCED = 1e-9
+SMALL, HARMONICS, SAMPLES = 1e-6, 40, 720
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A moment of a line: ``time`` [s], ``angle`` [rad] and ``speed`` [rad/s] of the coordinates as deviations,
+    ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero)."""
+
+    time: float
+    angle: Array
+    speed: Array
+    memory: Array
+    integral: Array
+
+    @classmethod
+    def at_rest(cls, system: System, time: float = 0.0) -> State:
+        """No deviation and nothing remembered."""
+        still = np.zeros(len(system.coordinates))
+        return cls(time, still, still.copy(), np.zeros(len(system.connections.names)), np.zeros(0))
+
+    @classmethod
+    def ending(cls, run: xr.Dataset, system: System) -> State:
+        """The last moment of a run of `transient`; raises ModelError for another system's."""
+        if run.attrs.get("system_hash") != system.hash and run.sizes["coordinate"] != len(system.coordinates):
+            raise ModelError("the run is one of another system", where="start")
+        told = [np.asarray(run[f"end_{name}"].values, dtype=float) for name in ("angle", "speed", "memory", "integral")]
+        return cls(float(run.attrs["end_time"]), *told)
+
+
+def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
+    """The state that ``start`` means; raises ModelError for what means none."""
+    if start is None or start == "equilibrium":
+        return equilibrated(system, acting, hold, speed)
+    if start == "vibrating":
+        return vibrating(system, acting, hold, speed)
+    if start == "rest":
+        return State.at_rest(system)
+    if isinstance(start, State):
+        return start
+    if isinstance(start, xr.Dataset):
+        return State.ending(start, system) if "end_angle" in start else periodic_state(start, system, acting, hold)
+    raise ModelError("no start", where="start", found=repr(start)[:60], allowed=STARTS)
+
+
+def equilibrated(system: System, acting: Acting, hold: str, speed: float) -> State:
+    """Every spring twisted by the mean torques of the time zero, all nodes at one speed.
+
+    A free line gets the rigid speed at which its drives let it go without drifting.
+    """
+    moving = vibrating(system, acting, hold, speed)
+    v = np.full(len(system.coordinates), float((system.M @ moving.speed).sum() / system.M.sum()))
+    still = State.at_rest(system)
+    angle = mean_angles(system, acting, hold)
+    return State(0.0, angle, still.speed if grounded(system) else v, still.memory, still.integral)
+
+
+def mean_angles(system: System, acting: Acting, hold: str) -> Array:
+    """Coordinates [rad] in equilibrium under the mean torques of the time zero, the node ``hold`` at rest."""
+    load = mean_load(acting, len(system.coordinates))
+    if not np.abs(load).max(initial=0.0) > 0:
+        return np.zeros(len(load))
+    return angles_of(system, _balanced_twists(system, load, hold), hold)
+
+
+def vibrating(system: System, acting: Acting, hold: str, speed: float) -> State:
+    """The steady response to the drives at the crank angle zero, each law a spring and a damper of its own slopes in
+    equilibrium: close to where a steady run ends."""
+    angle, still = mean_angles(system, acting, hold), State.at_rest(system)
+    if speed <= 0:
+        return State(0.0, angle, still.speed, still.memory, still.integral)
+    stiffness, damping = _tangents(system, angle, speed)
+    moved, rate = np.zeros(len(angle)), np.zeros(len(angle))
+    for order, torque in harmonics(acting, len(angle), speed).items():
+        w = order * speed
+        q = np.linalg.solve(stiffness + 1j * w * damping - w * w * system.M, torque)
+        moved, rate = moved + q.real, rate + (1j * w * q).real
+    return State(0.0, angle + moved, rate, still.memory, still.integral)
+
+
+def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, ComplexArray]:
+    """Complex 0-peak torques on the coordinates by order of the frame's rotation, at the levels of the time zero."""
+    found: dict[float, ComplexArray] = {}
+    parts = [(s.row, s.profile, 1.0 if s.level is None else float(s.level.at(0.0)), s.phase) for s in acting.sources]
+    parts += [(c.row, crank_profile(c), speed**2, c.phase) for c in acting.cranks]
+    for row, profile, level, phase in parts:
+        if profile is None or not level:
+            continue
+        series = level * np.fft.rfft(profile.coefficients[:, 0]) * 2 / len(profile.coefficients)
+        counts = np.abs(series) > SMALL * np.abs(series).max(initial=0.0)
+        for h in np.flatnonzero(counts[: len(series) - 1])[: 2 * HARMONICS]:
+            if h > 0:
+                order = round(h / profile.period, 9)
+                turned = series[h] * np.exp(1j * order * phase)
+                found[order] = found.get(order, np.zeros(coordinates, dtype=complex)) + row * turned
+    return found
+
+
+def crank_profile(crank: Crank) -> Profile:
+    """Torque of a reciprocating mass at a steady speed over Ω² [kgm²]."""
+    alpha = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
+    shape = SliderCrank(crank.radius, crank.rod, crank.offset)
+    return through(shape.reciprocating_torque(crank.mass, 1.0, alpha), 1.0)
+
+
+def _tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray, Array]:
+    """Stiffness, hysteretic and centrifugal parts included, and damping matrix about an equilibrium."""
+    c = system.connections
+    twist = c.weights @ angle
+    k, d = c.stiffness * (1 + 1j * c.loss_factor) + speed**2 * c.centrifugal_stiffness, c.damping.copy()
+    for i, law in enumerate(c.laws):
+        if law is not None:
+            told = law.evaluate(twist[i])
+            k[i], d[i] = k[i] + float(told[1]), d[i] + float(told[2])
+    w = c.weights
+    return np.asarray((w.T * k) @ w, dtype=complex), np.asarray((w.T * d) @ w)
+
+
+def mean_load(acting: Acting, coordinates: int) -> Array:
+    """Mean torques on the coordinates at the time zero [Nm]."""
+    load = np.zeros(coordinates)
+    for source in acting.sources:
+        mean = source.profile.mean if source.profile is not None else 1.0
+        load += source.row * mean * (float(source.level.at(0.0)) if source.level is not None else 1.0)
+    return load
+
+
+def _balanced_twists(system: System, load: Array, hold: str) -> Array:
+    """Angles of the connections under a load that must be balanced, but for rounding."""
+    free = null_vectors(system.connections.weights[_carrying(system)])
+    left = np.abs(load @ free).max(initial=0.0)
+    if left > UNBALANCED * np.abs(load).max():
+        raise ModelError(
+            "the mean torques are not in balance, so there is no equilibrium to start from",
+            where="start",
+            found=f"{left:g} Nm too much",
+            remedy="name the node that takes them up (hold=), or start at 'rest'" if not hold else "start at 'rest'",
+        )
+    return settled(system, load - free @ np.linalg.lstsq(free, load, rcond=None)[0] if free.size else load)
+
+
+def _carrying(system: System) -> Array:
+    c = system.connections
+    return np.asarray((c.stiffness > 0) | np.array([law is not None and law.carries_mean_torque for law in c.laws]))
+
+
+def angles_of(system: System, twist: Array, hold: str) -> Array:
+    """Coordinates [rad] with given twists of the connections (smallest ones where friction alone says them), the node
+    ``hold`` at rest."""
+    carrying = _carrying(system)
+    w = system.connections.weights
+    q = np.asarray(np.linalg.lstsq(w[carrying], twist[carrying], rcond=None)[0])
+    return at_rest(system, q, hold)
+
+
+def at_rest(system: System, q: Array, hold: str) -> Array:
+    """The same with a node ``hold`` at rest by a rigid rotation."""
+    if not hold:
+        return q
+    held = row_of(system, hold)
+    return np.asarray(q - (held @ q) / held.sum()) if not grounded(system) else q
+
+
+def grounded(system: System) -> bool:
+    """Whether springs hold the line to the ground."""
+    return bool(np.abs(system.connections.weights[_carrying(system)].sum(axis=1)).max(initial=0.0) > 1e-9)
+
+
+def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str) -> State:
+    """The state at crank angle zero of one motion: orders of node angles at one speed, or one point of a branch.
+
+    Without order 0 the mean is the equilibrium.  Raises ModelError where several motions are left to choose from.
+    """
+    if "angle" not in found or "order" not in found.angle.dims:
+        raise ModelError("the dataset holds no motion", where="start", allowed=STARTS)
+    data = found.squeeze()
+    more = [str(dim) for dim in data.angle.dims if dim not in ("order", "node")]
+    if more:
+        remedy = f"choose one: data.isel({more[0]}=0)"
+        raise ModelError("the dataset holds several motions", where="start", found=", ".join(more), remedy=remedy)
+    angle = data.angle.transpose("order", "node").values
+    order = np.asarray(data.order.values, dtype=float)
+    rate = 1j * order * float(data.speed)
+    places = [system.node_index(node) for node in system.coordinates]
+    scale = system.T[places, np.arange(len(places))]
+    at = [list(data.node.values).index(node) for node in system.coordinates]
+    q, v = (((values[:, at] / scale).sum(axis=0)).real for values in (angle, rate[:, None] * angle))
+    state = State.at_rest(system)
+    if 0.0 not in order:
+        q = q + mean_angles(system, acting, hold)
+    return State(0.0, np.asarray(q), np.asarray(v), state.memory, state.integral)
