@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.errors import ModelError
-from torsional.laws import Coulomb, Hinges, Jenkins, Law, LuGre, Polynomial, Table, plain
+from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Law, LuGre, Polynomial, Table, plain
 from torsional.numerics.callbacks import law_at
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
@@ -24,6 +24,8 @@ from torsional.system import assemble
 
 LAWS: dict[str, Law] = {
     "hinges": Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], lash=0.02, stop_stiffness=1e6),
+    "contacts": Contacts((0.05, -0.1), (1.0, -1.0), (2e4, 3e4), (0.0, 0.0)),
+    "cut": Contacts.lash(0.02, 2e4, 1e-3, damper="cut"),
     "polynomial": Polynomial((2e3, -500.0, 4e4)),
     "table": Table(((-0.2, -300.0), (-0.1, -50.0), (0.0, 0.0), (0.05, 0.0), (0.1, 80.0), (0.3, 1000.0))),
     "coulomb": Coulomb(50.0, regularisation_rate=0.1),
@@ -40,6 +42,8 @@ LAWS: dict[str, Law] = {
     ),
 }
 KINKS = {
+    "cut": np.array([0.01, -0.01]),
+    "contacts": np.array([0.05, -0.1]),
     "hinges": np.array(LAWS["hinges"].gaps),  # type: ignore[attr-defined]
     "table": np.array([x for x, _ in LAWS["table"].points]),  # type: ignore[attr-defined]
 }
@@ -118,7 +122,7 @@ def test_importing_compiles_nothing_and_an_address_comes_from_the_disk() -> None
     code = (
         "import torsional.laws as laws\n"
         "kernels = [law.kernel for law in vars(laws).values() if hasattr(law, 'kernel')]\n"
-        "assert len(kernels) == 6 and not any(kernel.overloads for kernel in kernels)\n"
+        "assert len(kernels) == 7 and not any(kernel.overloads for kernel in kernels)\n"
         "laws.Jenkins(1.0, 1.0).address\n"
         "hits = laws.Jenkins.kernel.stats.cache_hits\n"
         "print(sum(hits.values()))\n"

@@ -17,9 +17,24 @@ arrays; other compiled code finds it at the law's ``address``.  A law of one's o
 """
 
 from torsional.laws.base import Law, Told, plain
+from torsional.laws.contacts import Contacts, HingeRows, contact_time, hinge_rows
 from torsional.laws.friction import Coulomb, Jenkins
 from torsional.laws.hinges import Hinges
 from torsional.laws.lugre import LuGre
 from torsional.laws.smooth import Polynomial, Table
 
-__all__ = ["Coulomb", "Hinges", "Jenkins", "Law", "LuGre", "Polynomial", "Table", "Told", "plain"]
+__all__ = [
+    "Contacts",
+    "Coulomb",
+    "HingeRows",
+    "Hinges",
+    "Jenkins",
+    "Law",
+    "LuGre",
+    "Polynomial",
+    "Table",
+    "Told",
+    "contact_time",
+    "hinge_rows",
+    "plain",
+]

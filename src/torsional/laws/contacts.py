@@ -1,0 +1,171 @@
+"""One-sided contacts with a contact time: lash, stops and springs that only push."""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError
+from torsional.laws.base import Law, Told, plain
+from torsional.laws.checks import not_negative, positive
+from torsional.laws.hinges import Hinges
+from torsional.numerics.arrays import Array
+
+DAMPERS = ("held", "cut")
+
+
+@numba.njit(cache=True, error_model="numpy")
+def contacts_torque(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
+    """f(φ, φ̇) = Σ s max(0, k (s (φ − g) + τ s φ̇)); parameters are 1 where cut, else 0, then rows of (g, s, k, τ)."""
+    torque, tangent, drag = 0.0, 0.0, 0.0
+    for i in range(1, parameters.size, 4):
+        side, stiffness, time = parameters[i + 1], parameters[i + 2], parameters[i + 3]
+        depth = side * (angle - parameters[i])
+        pressed = depth + time * side * rate
+        if (depth if parameters[0] > 0.0 else pressed) > 0.0:
+            torque += side * stiffness * pressed
+            tangent += stiffness
+            drag += stiffness * time
+    return plain(torque, tangent, drag)
+
+
+@dataclass(frozen=True)
+class Contacts(Law):
+    """One-sided springs, each with a damper: f(φ, φ̇) = Σ_i s_i max(0, k_i (s_i (φ − g_i) + τ_i s_i φ̇)).
+
+    Each contact has a gap g [rad], a side s = ±1 towards which it closes, a stiffness k [Nm/rad] and a contact time
+    τ = c/k [s] of its damping c.  ``stops`` names the angles [rad] that are end stops.  It never pulls, and the torque
+    is continuous: the damper begins to press at the distance τ φ̇ before the gap is used up.  With ``damper`` "cut" the
+    damper acts only beyond the gap, f_i = s_i k_i (s_i (φ − g_i) + τ_i s_i φ̇) there and nothing elsewhere: the torque
+    then jumps at both ends of a contact, pulls before it opens, and a time step loses its order.  Both leave a mass
+    that meets a free contact with the same speed, see `contact_time`.  Raises ModelError for values that are not
+    finite, k ≤ 0, τ < 0, sides other than ±1.
+
+    >>> law = Contacts.lash(0.02, 1e5, contact_time=1e-4)
+    >>> law.torque([0.0, 0.011, -0.011], [3.0, 0.0, -50.0]).round(6).tolist()
+    [0.0, 100.0, -600.0]
+    """
+
+    gaps: tuple[float, ...]
+    sides: tuple[float, ...]
+    stiffnesses: tuple[float, ...]
+    contact_times: tuple[float, ...]
+    stops: tuple[float, ...] = field(default=())
+    damper: str = "held"
+
+    kernel: ClassVar[Callable[..., Told]] = contacts_torque
+
+    def __post_init__(self) -> None:
+        columns = (self.gaps, self.sides, self.stiffnesses, self.contact_times)
+        if not self.gaps or len({len(column) for column in columns}) > 1:
+            raise ModelError("a contact needs a gap, a side, a stiffness and a contact time", found=repr(self))
+        if not np.isfinite(np.array(columns, dtype=float)).all() or any(s not in (-1.0, 1.0) for s in self.sides):
+            raise ModelError("contacts need finite values and sides of +1 or -1", found=repr(self))
+        for i, (stiffness, time) in enumerate(zip(self.stiffnesses, self.contact_times, strict=True)):
+            positive(stiffness, f"stiffnesses.{i}", "Nm/rad")
+            not_negative(time, f"contact_times.{i}", "s")
+        if self.damper not in DAMPERS:
+            raise ModelError("there is no such damper", where="damper", found=self.damper, allowed=", ".join(DAMPERS))
+
+    @classmethod
+    def lash(cls, play: float, stiffness: float, contact_time: float = 0.0, *, damper: str = "held") -> Contacts:
+        """Free play of a whole angle ``play`` [rad], half to each side, between flanks of one ``stiffness`` [Nm/rad].
+
+        >>> Contacts.lash(0.02, 1e5).gaps
+        (0.01, -0.01)
+        """
+        not_negative(play, "play", "rad")
+        half = 0.5 * float(play)
+        return cls((half, -half), (1.0, -1.0), (stiffness,) * 2, (contact_time,) * 2, damper=damper)
+
+    @classmethod
+    def between(
+        cls, low: float, high: float, stiffness: float, contact_time: float = 0.0, *, damper: str = "held"
+    ) -> Contacts:
+        """End stops at two angles [rad]; raises ModelError unless ``low`` is below ``high``.
+
+        >>> Contacts.between(-0.5, 0.7, 1e6).distance_to_stop(0.2, torque=1.0)
+        0.5
+        """
+        if not low < high:
+            raise ModelError("the lower stop is below the upper", where="low, high", found=f"{low:g}, {high:g} rad")
+        ends = (float(high), float(low))
+        return cls(ends, (1.0, -1.0), (stiffness,) * 2, (contact_time,) * 2, stops=(ends[1], ends[0]), damper=damper)
+
+    @property
+    def parameters(self) -> Array:
+        """1 where cut, else 0, then (gap, side, stiffness, contact time) of every contact."""
+        rows = np.array([self.gaps, self.sides, self.stiffnesses, self.contact_times], dtype=float)
+        return np.concatenate([[float(self.damper == "cut")], rows.T.ravel()])
+
+    def stage_name(self, angle: float) -> str:
+        """Which part an angle [rad] lies in: free play, contact, stop.
+
+        >>> [Contacts.between(-0.5, 0.7, 1e6).stage_name(x) for x in (0.0, 0.8)]
+        ['free play', 'stop']
+        """
+        closed = [g for g, s in zip(self.gaps, self.sides, strict=True) if s * (angle - g) > 0]
+        if any(stop in closed for stop in self.stops):
+            return "stop"
+        return "contact" if closed else "free play"
+
+    def distance_to_stop(self, angle: float, torque: float) -> float:
+        """The way [rad] left to the stop on the side of the torque: zero in it, not a number without one."""
+        way = 1.0 if torque >= 0 else -1.0
+        ahead = [g for g, s in zip(self.gaps, self.sides, strict=True) if s == way and g in self.stops]
+        return max(min(way * (g - angle) for g in ahead), 0.0) if ahead else float("nan")
+
+    def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
+        """Whether a contact opens or closes between two angles [rad]."""
+        low, high = np.broadcast_arrays(np.asarray(low, dtype=float), np.asarray(high, dtype=float))
+        edges = np.unique(self.gaps)
+        return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
+
+
+def contact_time(restitution: float, stiffness: float, inertia: float) -> float:
+    """The contact time τ [s] at which an ``inertia`` [kgm²] leaves a contact with that share of its speed.
+
+    A half swing of the damped oscillator: e = exp(−π ζ/√(1 − ζ²)), τ = 2 ζ √(J/k).  Raises ModelError unless
+    0 < e ≤ 1 and both others are positive.
+
+    >>> round(contact_time(0.8003536403, 1e4, 0.5), 10)
+    0.001
+    """
+    if not 0 < restitution <= 1:
+        raise ModelError("restitution is a share of the speed", where="restitution", found=f"{restitution:g}")
+    positive(stiffness, "stiffness", "Nm/rad")
+    positive(inertia, "inertia", "kgm²")
+    lost = -math.log(restitution)
+    return 2 * lost / math.hypot(math.pi, lost) * math.sqrt(inertia / stiffness)
+
+
+class HingeRows(NamedTuple):
+    """A law as hinges: s max(0, Δk (s (φ − g) + τ s φ̇)) each, beside a spring k0: arrays of one length."""
+
+    stiffness: float
+    gap: Array
+    side: Array
+    change: Array
+    contact_time: Array
+
+
+def hinge_rows(law: Law | None) -> HingeRows | None:
+    """A law as a spring k0 [Nm/rad] and hinges, where it is a sum of them; None where it is not.
+
+    >>> hinge_rows(Contacts.lash(0.02, 1e5)).change.tolist()
+    [100000.0, 100000.0]
+    """
+    if isinstance(law, Hinges):
+        gap, side, change = (np.array(values, dtype=float) for values in (law.gaps, law.sides, law.changes))
+        return HingeRows(float(law.stiffness), gap, side, change, np.zeros(gap.size))
+    if isinstance(law, Contacts) and law.damper == "held":
+        values = (law.gaps, law.sides, law.stiffnesses, law.contact_times)
+        return HingeRows(0.0, *(np.array(column, dtype=float) for column in values))
+    return None

@@ -1,0 +1,151 @@
+"""A system as arrays of a time step: the same matrices, the same torques, whose speeds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from torsional.components import Coupling, Damper, GearPair, Inertia, Shaft
+from torsional.errors import ModelError
+from torsional.laws import Contacts, Hinges, LuGre, Polynomial, hinge_rows
+from torsional.numerics.stepping_data import Connected, Rows
+from torsional.powertrain import Powertrain
+from torsional.solvers.transient.arrays import connected, masses, with_viscous_losses
+from torsional.stamps import Mass, NormalLoad, SpeedSwitch
+from torsional.system import System, assemble
+
+STAGES = Hinges.staged([(500.0, 1e4), (1500.0, 3e4)], coast=[(400.0, 2e4)], stop_stiffness=1e6)
+BRISTLES = LuGre(500.0, 0.5, 0.02, breakaway_torque=0.03, stribeck_rate=0.5)
+PRESSED = NormalLoad(4.0, 0.02, {"shaft": 0.25, "flywheel": 0.5}, carrier="wheel", level="pedal")
+
+
+class Wheel:
+    """A wheel that carries more above 100 rad/s."""
+
+    def stamps(self, name: str) -> Any:
+        """One mass."""
+        yield Mass(name, {name: 1.0}, 3.0, SpeedSwitch(4.0, 100.0))
+
+
+PARTS: dict[str, Any] = {
+    "engine": Inertia(1.0),
+    "flywheel": Coupling("pinion", "engine", STAGES, damping=5.0),
+    "pinion": Inertia(0.1),
+    "bearing": Damper("pinion", damping=0.7),
+    "wheel": Wheel(),
+    "gear": GearPair("pinion", "wheel", ratio=-2.0),
+    "shaft": Shaft("wheel", "vehicle", 1e5, damping=40.0),
+    "rub": Coupling("pinion", "engine", BRISTLES, load=PRESSED),
+    "drag": Coupling("ground", "vehicle", Polynomial((0.0, 1.0, 2.0)), whole_speed=True),
+    "teeth": Coupling("vehicle", "trailer", Contacts.lash(0.01, 2e5, 1e-4), damping=1.0),
+    "vehicle": Inertia(50.0),
+    "trailer": Inertia(10.0),
+}
+
+
+def line(**more: Any) -> System:
+    return assemble(Powertrain(PARTS | more))
+
+
+def dense(rows: Rows, count: int) -> Any:
+    """Rows as a matrix."""
+    out = np.zeros((rows.start.size - 1, count))
+    for i in range(len(out)):
+        span = slice(rows.start[i], rows.start[i + 1])
+        out[i, rows.column[span]] = rows.weight[span]
+    return out
+
+
+def test_masses_are_those_of_the_system() -> None:
+    system = line()
+    for speed in (50.0, 150.0):
+        rows, inertia = masses(system, speed)
+        v = dense(rows, len(system.coordinates))
+        np.testing.assert_array_equal((v.T * inertia) @ v, system.switched(speed).M)
+    assert masses(system, 100.0, rising=False)[1].max() == masses(system, 99.0)[1].max() == 50.0
+
+
+def test_springs_dampers_and_hinges() -> None:
+    system = line()
+    found, c = connected(system, {"pedal": 0}), system.connections
+    w = dense(found.rows, len(system.coordinates))
+    np.testing.assert_array_equal(w, c.weights)
+    np.testing.assert_array_equal((w.T * found.damping) @ w, system.C)
+    place = c.names.index("flywheel")
+    assert found.stiffness[place] == STAGES.stiffness and found.stiffness[c.names.index("shaft")] == 1e5
+    angles = np.linspace(-0.3, 0.3, 61)
+    for name, law in (("flywheel", STAGES), ("teeth", PARTS["teeth"].law)):
+        np.testing.assert_allclose(summed(found, c.names.index(name), angles), law.torque(angles, 2.0), atol=1e-9)
+    assert np.flatnonzero(found.address).tolist() == [c.names.index("rub"), c.names.index("drag")]
+
+
+def summed(found: Connected, e: int, angle: Any) -> Any:
+    """The torque that the arrays of one connection say, its damper left out, at the rate 2."""
+    torque = found.stiffness[e] * angle
+    for h in range(found.hinge_start[e], found.hinge_start[e + 1]):
+        side, change = found.side[h], found.change[h]
+        pressed = side * (angle - found.gap[h]) + found.contact_time[h] * side * 2.0
+        torque = torque + side * change * np.maximum(0.0, pressed)
+    return torque
+
+
+def test_whose_speed_a_connection_sees() -> None:
+    """A bearing the deviation from the mean rotation, a road load the whole, a shaft neither."""
+    system = line()
+    found, names = connected(system, {"pedal": 0}), system.connections.names
+    ones = np.ones(len(system.coordinates))
+    expected = {name: float(system.connections.weights[i] @ ones) for i, name in enumerate(names)}
+    assert expected["bearing"] == -1.0 and expected["drag"] == pytest.approx(-0.5)
+    for i, name in enumerate(names):
+        assert found.follow[i] == pytest.approx(expected[name] if name == "bearing" else 0.0, abs=0)
+        assert found.mean_rate[i] == pytest.approx(expected[name] if name == "drag" else 0.0, abs=0)
+
+
+def test_laws_and_their_loads() -> None:
+    system = line()
+    found, names = connected(system, {"other": 0, "pedal": 1}), system.connections.names
+    e = names.index("rub")
+    values = found.law_values[found.law_start[e] : found.law_start[e + 1]]
+    assert values.tolist() == BRISTLES.parameters.tolist() and found.address[e] == BRISTLES.address
+    assert (found.load_place[e], found.load_constant[e], found.load_level[e]) == (LuGre.load_place, 4.0, 1)
+    assert found.load_centrifugal[e] == pytest.approx(0.02 / 4)
+    span = slice(found.load_start[e], found.load_start[e + 1])
+    told = {names[j]: share for j, share in zip(found.load_of[span], found.load_share[span], strict=True)}
+    assert told == {"shaft": 0.25, "flywheel": 0.5}
+    others = np.arange(len(names)) != e
+    assert (found.load_place[others] == -1).all() and (found.load_level[others] == -1).all()
+    assert found.remembers.sum() == 1 and found.remembers[e] == 1
+    assert {found.hinge_start.size, found.law_start.size, found.load_start.size} == {len(names) + 1}
+
+
+def test_a_linear_line_has_empty_arrays_of_the_right_kinds() -> None:
+    found = connected(assemble(Powertrain({"a": Inertia(1.0), "b": Inertia(2.0), "s": Shaft("a", "b", 1e4)})))
+    kinds = {name: getattr(found, name).dtype for name in found._fields if name != "rows"}
+    whole = {"hinge_start", "address", "law_start", "remembers", "load_place", "load_level", "load_start", "load_of"}
+    assert kinds == {name: np.dtype(np.int64 if name in whole else float) for name in kinds}
+
+
+def test_loss_factors_are_refused_or_made_dampers() -> None:
+    lossy = line(shaft=Shaft("wheel", "vehicle", 1e5, damping=40.0, loss_factor=0.02))
+    with pytest.raises(ModelError, match=r"shaft: a loss factor .* found loss_factor 0.02; .*with_viscous_losses"):
+        connected(lossy, {"pedal": 0})
+    taken = with_viscous_losses(lossy, 25.0)
+    place = lossy.connections.names.index("shaft")
+    assert connected(taken, {"pedal": 0}).damping[place] == pytest.approx(40.0 + 0.02 * 1e5 / (50 * np.pi))
+    with pytest.raises(ModelError, match="frequency"):
+        with_viscous_losses(lossy, 0.0)
+
+
+def test_loads_refused() -> None:
+    with pytest.raises(ModelError, match=r"rub: no level .* found pedal; did you mean 'peda'"):
+        connected(line(), {"peda": 0})
+    curved = line(flywheel=Coupling("pinion", "engine", Polynomial((1e4,)), damping=5.0))
+    with pytest.raises(ModelError, match=r"torque of 'flywheel', which is neither .* found Polynomial"):
+        connected(curved, {"pedal": 0})
+
+
+def test_hinge_rows_are_a_property_of_the_data() -> None:
+    assert hinge_rows(None) is None and hinge_rows(BRISTLES) is None
+    assert hinge_rows(Contacts.lash(0.01, 1e5, 1e-3, damper="cut")) is None
