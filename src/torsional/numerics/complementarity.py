@@ -21,8 +21,7 @@ from torsional.numerics.small_linear import backsolve, factor
 
 STRIKES = 3  # passes that may fail to lower the number of wrong contacts before they change one at a time
 ROUNDING = 1e-15  # of the terms of a sum, times their number: wrong by no more than rounding
-PATIENCE = 64  # passes, and two a contact more, after which what counts as rounding grows tenfold
-MOST_PASSES = 10_000
+MOST_PASSES = 100_000
 
 
 class Contacts(NamedTuple):
@@ -70,33 +69,52 @@ def _find_wrong(matrix: Array, offset: Array, closed: IntArray, force: Array, ro
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _change(closed: IntArray, wrong: IntArray, single: bool) -> None:
+    """Wrong contacts change sides: all of them, or the last one alone."""
+    for i in range(closed.size - 1, -1, -1):
+        if wrong[i] == 1:
+            closed[i] = 1 - closed[i]
+            if single:
+                return
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _returned(closed: IntArray, seen: IntArray, since: int) -> bool:
+    """Whether a set has come back to one ``seen``, which is set anew after 1, 2, 4, … passes (Brent's method)."""
+    same = since > 1
+    for i in range(closed.size):
+        same = same and closed[i] == seen[i]
+    if since & (since - 1) == 0:
+        seen[:] = closed
+    return same
+
+
+@numba.njit(cache=True, error_model="numpy")
 def block_pivoting(matrix: Array, offset: Array, closed: IntArray, force: Array) -> tuple[int, int]:
     """Solve the scaled problem in place, from the contacts that are ``closed`` (n,) of 0 and 1 to begin with.
 
     All wrong contacts change sides at once; where that has not lowered their number three times, the last one alone
-    does until it is lowered (Murty's rule, finite for P-matrices).  Contacts that go in circles for longer do so by
-    rounding, and are let off by ever more of it.  Back come the passes and how many of them changed one contact; −1
-    passes where a matrix was singular or `MOST_PASSES` did not do.  Source: Kostreva, Linear Algebra Appl. 21 (1978);
-    Júdice and Pires, Comput. Oper. Res. 21 (1994) 587.
+    does until it is lowered (Murty's rule, finite for P-matrices).  That rule goes in circles by rounding only, of
+    which it is then let off more.  Back come the passes and how many of them changed one contact; −1 passes where a
+    matrix was singular or `MOST_PASSES` did not do.  Source: Kostreva, Linear Algebra Appl. 21 (1978) 207; Júdice and
+    Pires, Comput. Oper. Res. 21 (1994) 587.
     """
-    n = offset.size
-    wrong, best, strikes, singles = np.empty(n, dtype=np.int64), n + 1, STRIKES, 0
+    n, best, strikes, singles, since = offset.size, offset.size + 1, STRIKES, 0, 0
+    wrong, seen, rounding = np.empty(n, dtype=np.int64), np.full(n, -1), ROUNDING * n
     for passes in range(1, MOST_PASSES + 1):
         if not _closed_forces(matrix, offset, closed, force):
             return -1, singles
-        rounding = ROUNDING * n * 10.0 ** (passes // (PATIENCE + 2 * n))
         count = _find_wrong(matrix, offset, closed, force, rounding, wrong)
         if count == 0:
             np.maximum(force, 0.0, force)
             return passes, singles
         strikes = STRIKES if count < best else strikes - 1
         best = min(best, count)
-        for i in range(n - 1, -1, -1):
-            if wrong[i] == 1:
-                closed[i] = 1 - closed[i]
-                if strikes < 0:
-                    singles += 1
-                    break
+        _change(closed, wrong, strikes < 0)
+        since = since + 1 if strikes < 0 else 0
+        singles += strikes < 0
+        if since > 0 and _returned(closed, seen, since):
+            rounding *= 10.0
     return -1, singles
 
 
