@@ -1,0 +1,147 @@
+"""LDLᵀ of a sparse symmetric positive definite matrix whose pattern never changes: order and tape once, then numbers.
+
+Values live in one flat array: the diagonal in the order of elimination, then the couplings below it column by column.
+The order takes out nodes with the fewest neighbours first and, among equals, those that wait for the fewest others, so
+that the shoes of a spring channel come before the bodies they slide between, and neighbours do not queue up.
+"""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import combinations, pairwise
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from torsional.numerics.arrays import Array
+
+PlaceArray = NDArray[np.uint32]
+
+
+class Tape(NamedTuple):
+    """What factor and solve follow.  Positions count in the order of elimination, slots in the flat array.
+
+    ``node`` (n,) is the coordinate at each position.  Positions of one level, ``level`` to the next, do not depend on
+    each other; their couplings are those from ``coupled`` on, each with ``column`` and ``row`` (positions), and their
+    updates a[target] −= l[left] a[right] those from ``updated`` on (slots, ``left`` counted among couplings).
+    ``back_…`` are the couplings in the order that the back substitution takes them.
+    """
+
+    node: PlaceArray
+    level: PlaceArray
+    coupled: PlaceArray
+    updated: PlaceArray
+    column: PlaceArray
+    row: PlaceArray
+    target: PlaceArray
+    left: PlaceArray
+    right: PlaceArray
+
+
+def places(values: Iterable[int]) -> PlaceArray:
+    """Indices as compiled code likes them: without a sign, so that none counts from the end."""
+    return np.array(list(values), dtype=np.uint32)
+
+
+def elimination(supports: Sequence[set[int]], n: int) -> list[tuple[int, int, set[int]]]:
+    """(node, level, neighbours left) in the order of elimination, levels rising.
+
+    >>> [(node, level) for node, level, _ in elimination([{0, 1}, {1, 2}, {2, 3}], 4)]
+    [(0, 0), (3, 0), (1, 1), (2, 2)]
+    """
+    joined: list[set[int]] = [set() for _ in range(n)]
+    for support in supports:
+        for i, j in combinations(support, 2):
+            joined[i].add(j)
+            joined[j].add(i)
+    level, left, found = [0] * n, set(range(n)), []
+    while left:
+        node = min(left, key=lambda i: (len(joined[i]), level[i], i))
+        left.remove(node)
+        found.append((node, level[node], set(joined[node])))
+        for i in joined[node]:
+            joined[i] |= joined[node] - {i}
+            joined[i].discard(node)
+            level[i] = max(level[i], level[node] + 1)
+    return sorted(found, key=lambda one: one[1])
+
+
+def tape_of(supports: Sequence[set[int]], n: int) -> Tape:
+    """The tape of an (n, n) matrix that couples the coordinates of each support.
+
+    >>> tape_of([{0, 1}, {1, 2}], 3).node.tolist()
+    [0, 2, 1]
+    """
+    order = elimination(supports, n)
+    position = {node: p for p, (node, _, _) in enumerate(order)}
+    below = [sorted(position[j] for j in neighbours) for _, _, neighbours in order]
+    levels = [level for _, level, _ in order]
+    couplings, slots, updates, coupled, updated = [], {}, [], [0], [0]
+    starts = [p for p in range(n) if p == 0 or levels[p] != levels[p - 1]] + [n]
+    for first, last in pairwise(starts):
+        members = range(first, last)
+        for k in range(max(len(below[p]) for p in members)):  # in turn, so that no node is written to twice in a row
+            couplings += [(p, below[p][(k + p) % len(below[p])]) for p in members if k < len(below[p])]
+        slots = {pair: n + slot for slot, pair in enumerate(couplings)} | {(p, p): p for p in range(n)}
+        coupled.append(len(couplings))
+        updates += [(i, j, p) for p in members for a, j in enumerate(below[p]) for i in below[p][a:]]
+        updated.append(len(updates))
+    return Tape(
+        node=places(node for node, _, _ in order),
+        level=places(starts),
+        coupled=places(coupled),
+        updated=places(updated),
+        column=places(p for p, _ in couplings),
+        row=places(i for _, i in couplings),
+        target=places(slots[j, i] for i, j, _ in updates),
+        left=places(slots[p, i] - n for i, _, p in updates),
+        right=places(slots[p, j] for _, j, p in updates),
+    )
+
+
+def slot_of(tape: Tape, i: int, j: int) -> int:
+    """The slot of entry (i, j) of the matrix, in coordinates; raises ValueError for one outside the pattern.
+
+    >>> [slot_of(tape_of([{0, 1}, {1, 2}], 3), *pair) for pair in ((1, 1), (0, 1), (2, 1))]
+    [2, 3, 4]
+    """
+    p, r = sorted((int(np.flatnonzero(tape.node == i)[0]), int(np.flatnonzero(tape.node == j)[0])))
+    if p == r:
+        return p
+    found = np.flatnonzero((tape.column == p) & (tape.row == r))
+    if not found.size:
+        raise ValueError(f"({i}, {j}) is outside the pattern")
+    return int(tape.node.size + found[0])
+
+
+@numba.njit(cache=True, error_model="numpy")
+def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
+    """LDLᵀ of ``matrix`` (slots,), which is used up: ``lower`` (couplings,) and ``inverse`` (n,) = 1/D.
+
+    False where a pivot is not positive: the matrix is not positive definite.
+    """
+    n, worst = np.uint32(inverse.size), np.inf
+    for level in range(tape.level.size - 1):
+        for p in range(tape.level[level], tape.level[level + 1]):
+            worst = min(worst, matrix[p])
+            inverse[p] = 1.0 / matrix[p]
+        for c in range(tape.coupled[level], tape.coupled[level + 1]):
+            lower[c] = matrix[n + c] * inverse[tape.column[c]]
+        for u in range(tape.updated[level], tape.updated[level + 1]):
+            matrix[tape.target[u]] -= lower[tape.left[u]] * matrix[tape.right[u]]
+    return worst > 0.0
+
+
+@numba.njit(cache=True, error_model="numpy")
+def substitute(tape: Tape, lower: Array, inverse: Array, x: Array) -> None:
+    """The solution in place of the right-hand side x (n,), both in the order of elimination."""
+    count = lower.size
+    for c in range(count):
+        x[tape.row[c]] -= lower[c] * x[tape.column[c]]
+    for p in range(x.size):
+        x[p] *= inverse[p]
+    for c in range(count - 1, -1, -1):
+        x[tape.column[c]] -= lower[c] * x[tape.row[c]]
