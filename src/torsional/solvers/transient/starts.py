@@ -38,6 +38,11 @@ class State:
         still = np.zeros(len(system.coordinates))
         return cls(time, still, still.copy(), np.zeros(len(system.connections.names)), np.zeros(0))
 
+    def beside(self, other: State, share: float) -> State:
+        """The state that lies a ``share`` of the way to another one, at this one's time."""
+        mine, theirs = ((s.angle, s.speed, s.memory, s.integral) for s in (self, other))
+        return State(self.time, *(a + share * (b - a) for a, b in zip(mine, theirs, strict=True)))
+
     @classmethod
     def ending(cls, run: xr.Dataset, system: System) -> State:
         """The last moment of a run of `transient`; raises ModelError for another system's."""
@@ -88,7 +93,9 @@ def vibrating(system: System, acting: Acting, hold: str, speed: float) -> State:
     angle, still = mean_angles(system, acting, hold), State.at_rest(system)
     if speed <= 0:
         return State(0.0, angle, still.speed, still.memory, still.integral)
-    stiffness, damping = _tangents(system, angle, speed)
+    k, d = tangents(system, angle, speed)
+    rows = system.connections.weights
+    stiffness, damping = (rows.T * k) @ rows, (rows.T * d) @ rows
     moved, rate = np.zeros(len(angle)), np.zeros(len(angle))
     for order, torque in harmonics(acting, len(angle), speed).items():
         w = order * speed
@@ -122,8 +129,9 @@ def crank_profile(crank: Crank) -> Profile:
     return through(shape.reciprocating_torque(crank.mass, 1.0, alpha), 1.0)
 
 
-def _tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray, Array]:
-    """Stiffness, hysteretic and centrifugal parts included, and damping matrix about an equilibrium."""
+def tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray, Array]:
+    """Slopes of all connections at rest at the coordinates ``angle``: stiffness [Nm/rad], its hysteretic part the
+    imaginary one and the centrifugal part in it, and damping [Nms/rad]."""
     c = system.connections
     twist = c.weights @ angle
     k, d = c.stiffness * (1 + 1j * c.loss_factor) + speed**2 * c.centrifugal_stiffness, c.damping.copy()
@@ -131,8 +139,7 @@ def _tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray,
         if law is not None:
             told = law.evaluate(twist[i])
             k[i], d[i] = k[i] + float(told[1]), d[i] + float(told[2])
-    w = c.weights
-    return np.asarray((w.T * k) @ w, dtype=complex), np.asarray((w.T * d) @ w)
+    return np.asarray(k), d
 
 
 def mean_load(acting: Acting, coordinates: int) -> Array:

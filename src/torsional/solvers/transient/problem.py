@@ -1,0 +1,119 @@
+"""From a system and its drives to the arrays that are stepped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.engine import Excitation
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array
+from torsional.numerics.stepping_data import Equations, rows_of
+from torsional.solvers.transient.acting import Acting, Drive, assembled, row_of
+from torsional.solvers.transient.arrays import connected, masses
+from torsional.solvers.transient.drives import all_acting, held
+from torsional.solvers.transient.profiles import Level, level_of
+from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
+from torsional.system import System
+
+Drives = Drive | Excitation | Sequence[Drive | Excitation]
+Levels = Mapping[str, tuple[ArrayLike, ArrayLike]]
+COUNTS = 1e-9
+"""Share of the largest harmonic from which one counts for the period."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A ``system`` under what acts on it, its frame turning at ``speed``; ``levels`` by name over time."""
+
+    system: System
+    acting: Acting
+    speed: SpeedProfile
+    hold: str = ""
+    levels: Mapping[str, Level] | None = None
+    reference: str = ""
+    reference_time: float = np.inf
+
+    @classmethod
+    def of(
+        cls,
+        system: System,
+        drives: Drives,
+        speed: float | SpeedProfile | None,
+        *,
+        hold: str = "",
+        levels: Levels | None = None,
+        reference: str = "",
+        reference_time: float = np.inf,
+    ) -> Problem:
+        """What the arguments of `transient` mean."""
+        profile = as_speed(only_speed(drives) if speed is None else speed)
+        acting = held(all_acting(drives, system, profile), system, hold)
+        given = {name: level_of(*knots, f"levels.{name}") for name, knots in (levels or {}).items()}
+        return cls(system, acting, profile, hold, given, reference, reference_time)
+
+    @cached_property
+    def start_speed(self) -> float:
+        """Mean speed at the time zero [rad/s]."""
+        return float(self.speed.at(0.0))
+
+    @cached_property
+    def reference_node(self) -> str:
+        """The node whose speed counts for centrifugal forces: the one asked for, or the first at engine speed."""
+        if self.reference:
+            return self.system.nodes[self.system.node_index(self.reference)]
+        return self.system.nodes[int(np.argmin(np.abs(self.system.speed_ratio - 1.0)))]
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The arrays of all that moves."""
+        system, count = self.system, len(self.system.coordinates)
+        driven, governed, places = assembled(self.acting, count, self.levels)
+        mass_rows, inertia = masses(system, self.start_speed)
+        row = row_of(system, self.reference_node)
+        ratio = float(row.sum())
+        frame = self.speed.level
+        return Equations(
+            count,
+            mass_rows,
+            inertia,
+            connected(system, places),
+            driven,
+            governed,
+            rows_of((row / ratio if ratio else row)[None]),
+            self.reference_time,
+            frame.time,
+            frame.value,
+        )
+
+    @cached_property
+    def base_order(self) -> float:
+        """The largest order of which all that the drives have is made; 0 without any."""
+        found = 0
+        for source in self.acting.sources:
+            if source.profile is None:
+                continue
+            size = np.abs(np.fft.rfft(source.profile.coefficients[:, 0]))
+            counts = np.flatnonzero(size[1:] > COUNTS * size[1:].max(initial=0.0)) + 1
+            orders = np.round(2 * counts / source.profile.period).astype(int)
+            found = int(np.gcd.reduce(np.append(orders, found)))
+        return found / 2 if not self.acting.cranks else 0.5
+
+
+def only_speed(drives: Drives) -> float:
+    """The one speed that the drives say; raises ModelError for none and for several."""
+    listed = drives if isinstance(drives, Sequence) else (drives,)
+    said = {float(v) for drive in listed for v in np.atleast_1d(_speed_of(drive))}
+    if len(said) != 1:
+        found = ", ".join(f"{v:g}" for v in sorted(said)[:6]) or "none"
+        raise ModelError("the mean speed is missing", where="speed", found=found, remedy="say speed= in rad/s")
+    return said.pop()
+
+
+def _speed_of(drive: object) -> Array:
+    told = getattr(getattr(drive, "excitation", drive), "speed", np.zeros(0))
+    return np.asarray(told, dtype=float).ravel()
