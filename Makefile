@@ -2,7 +2,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 BENCH_VENV ?= .venv-bench
-PYHARM_VENV := $(BENCH_VENV)-pyharm
+# Peers of the benchmarks with an environment each, benchmarks/peer_<name>.txt; the environment is $(BENCH_VENV)-<name>.
+APART := pyharm exudyn sundae
 # Worker processes of the test run; the default suits two cores.
 JOBS ?= 2
 # What `make bench` times: a folder or one of its files.
@@ -53,7 +54,7 @@ examples: $(VENV)/.installed-run  ## check every model file and run every script
 
 check: lint types imports examples docs test  ## everything CI runs
 
-bench: $(BENCH_VENV)/.installed-bench $(PYHARM_VENV)/.tried  ## time this project beside its peers, in an environment of their own
+bench: $(BENCH_VENV)/.installed-bench $(APART:%=$(BENCH_VENV)-%/.tried)  ## time this project beside its peers, in an environment of their own
 	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini $(BENCHMARKS)
 
 constraints:  ## pin anew: names and versions from a fresh environment, into constraints.txt
@@ -65,7 +66,7 @@ constraints:  ## pin anew: names and versions from a fresh environment, into con
 	rm -rf .venv-pins
 
 clean:  ## remove what was built, the environments too
-	rm -rf $(VENV) $(BENCH_VENV) $(PYHARM_VENV) .venv-pins docs/_build docs/_generated jupyter_execute .benchmarks build dist
+	rm -rf $(VENV) $(BENCH_VENV) $(APART:%=$(BENCH_VENV)-%) .venv-pins docs/_build docs/_generated jupyter_execute .benchmarks build dist
 	find src tests benchmarks docs examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # --- environments: a stamp file says that an install is done; a change of the project file or of the pins undoes it ---
@@ -97,11 +98,12 @@ $(BENCH_VENV)/.installed-bench: pyproject.toml constraints.txt | $(BENCH_VENV)/b
 	@$(BENCH_VENV)/bin/python $(PIP_INSTALL) -e '.[test,bench]' $(PEERS)
 	@touch $@
 
-# A peer whose pins and this project's exclude each other, in an environment of its own; where it cannot be installed the
-# benchmarks go without it, and it is tried again when its list changes or the folder is removed.
-$(PYHARM_VENV)/.tried: benchmarks/peer_pyharm.txt
+# Peers whose pins and this project's exclude each other, or that not every machine has, each in an environment of its own;
+# where one cannot be installed the benchmarks go without it, and it is tried again when its list changes or the folder is
+# removed.
+$(BENCH_VENV)-%/.tried: benchmarks/peer_%.txt
 	@$(check_python)
-	@echo "Installing pyHarm into $(PYHARM_VENV) ..."
-	@rm -rf $(PYHARM_VENV)
-	@{ $(PYTHON) -m venv $(PYHARM_VENV) && $(PYHARM_VENV)/bin/python -m pip install --quiet --retries 3 --timeout 60 -r $<; } || { echo "pyHarm cannot be installed here: the benchmark of periodic motion goes without it."; rm -rf $(PYHARM_VENV); }
-	@mkdir -p $(PYHARM_VENV) && touch $@
+	@echo "Installing $* into $(@D) ..."
+	@rm -rf $(@D)
+	@{ $(PYTHON) -m venv $(@D) && $(@D)/bin/python -m pip install --quiet --retries 3 --timeout 60 -r $<; } || { echo "$* cannot be installed here: its benchmarks go without it."; rm -rf $(@D); }
+	@mkdir -p $(@D) && touch $@

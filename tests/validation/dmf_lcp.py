@@ -58,60 +58,56 @@ def _one_sided() -> list[tuple[int, int, float, float]]:
 
 
 PLUS, MINUS, GAP, SPRING_STIFFNESS = (np.array(column) for column in zip(*_one_sided(), strict=True))
-_FIRST, _SECOND, _STIFFNESS, _DAMPING = (np.array(column) for column in zip(*LINEAR, strict=True))
+FIRST, SECOND, STIFFNESS, DAMPING = (np.array(column) for column in zip(*LINEAR, strict=True))
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _rates(t, y, out, drive, inertia, linear, springs):  # type: ignore[no-untyped-def]
-    n = inertia.size
+def fill_rates(t, y, out, drive):  # type: ignore[no-untyped-def]
+    """ẏ into ``out`` of the state y: angles [rad], then their rates [rad/s]; ``drive`` is that of `Flywheel`."""
+    angle, rate, torque = y[:NODES], y[NODES:], out[NODES:]
     speed_from, speed_to, span, mean = drive
-    first, second, stiffness, damping = linear
-    plus, minus, gap, hard, contact_time = springs
-    angle, rate, torque = y[:n], y[n:], out[n:]
-    torque[:] = 0.0
     turned = speed_from * t + 0.5 * (speed_to - speed_from) * t * t / span
-    torque[0] = mean + 1500.0 * np.sin(3.0 * turned)
-    torque[3] = -mean
-    for e in range(first.size):
-        a, b = first[e], second[e]
-        force = stiffness[e] * (angle[a] - angle[b]) + damping[e] * (rate[a] - rate[b])
+    torque[:] = 0.0
+    torque[PRIMARY] = mean + SWING * np.sin(ORDER * turned)
+    torque[VEHICLE] = -mean
+    for e in range(FIRST.size):
+        a, b = FIRST[e], SECOND[e]
+        force = STIFFNESS[e] * (angle[a] - angle[b]) + DAMPING[e] * (rate[a] - rate[b])
         torque[a] -= force
         torque[b] += force
-    for i in range(plus.size):
-        a, b = plus[i], minus[i]
-        force = max(0.0, -hard[i] * (gap[i] + angle[a] - angle[b] + contact_time * (rate[a] - rate[b])))
+    for i in range(PLUS.size):
+        a, b = PLUS[i], MINUS[i]
+        g = GAP[i] + angle[a] - angle[b] + CONTACT_TIME * (rate[a] - rate[b])
+        force = max(0.0, -SPRING_STIFFNESS[i] * g)
         torque[a] += force
         torque[b] -= force
-    for i in range(n):
+    for i in range(NODES):
         out[i] = rate[i]
-        torque[i] /= inertia[i]
+        torque[i] /= INERTIA[i]
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _derivatives(y, out, inertia, linear, springs):  # type: ignore[no-untyped-def]
-    n = inertia.size
-    first, second, stiffness, damping = linear
-    plus, minus, gap, hard, contact_time = springs
-    angle, rate = y[:n], y[n:]
+def fill_jacobian(y, out):  # type: ignore[no-untyped-def]
+    """∂ẏ/∂y into ``out``."""
+    angle, rate = y[:NODES], y[NODES:]
     out[:] = 0.0
-    for i in range(n):
-        out[i, n + i] = 1.0
-    for e in range(first.size):
-        _spring(out, inertia, first[e], second[e], stiffness[e], damping[e])
-    for i in range(plus.size):
-        a, b = plus[i], minus[i]
-        if gap[i] + angle[a] - angle[b] + contact_time * (rate[a] - rate[b]) < 0.0:
-            _spring(out, inertia, a, b, hard[i], hard[i] * contact_time)
+    for i in range(NODES):
+        out[i, NODES + i] = 1.0
+    for e in range(FIRST.size):
+        _couple(out, FIRST[e], SECOND[e], STIFFNESS[e], DAMPING[e])
+    for i in range(PLUS.size):
+        a, b = PLUS[i], MINUS[i]
+        if GAP[i] + angle[a] - angle[b] + CONTACT_TIME * (rate[a] - rate[b]) < 0.0:
+            _couple(out, a, b, SPRING_STIFFNESS[i], SPRING_STIFFNESS[i] * CONTACT_TIME)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _spring(out, inertia, a, b, stiffness, damping):  # type: ignore[no-untyped-def]
-    n = inertia.size
+def _couple(out, a, b, stiffness, damping):  # type: ignore[no-untyped-def]
     for x, y in ((a, b), (b, a)):
-        out[n + x, x] -= stiffness / inertia[x]
-        out[n + x, y] += stiffness / inertia[x]
-        out[n + x, n + x] -= damping / inertia[x]
-        out[n + x, n + y] += damping / inertia[x]
+        out[NODES + x, x] -= stiffness / INERTIA[x]
+        out[NODES + x, y] += stiffness / INERTIA[x]
+        out[NODES + x, NODES + x] -= damping / INERTIA[x]
+        out[NODES + x, NODES + y] += damping / INERTIA[x]
 
 
 @dataclass(frozen=True)
@@ -129,35 +125,20 @@ class Flywheel:
     mean: float = MEAN
 
     @cached_property
-    def _drive(self) -> tuple[float, float, float, float]:
+    def drive(self) -> tuple[float, float, float, float]:
+        """The numbers that the torques follow from."""
         return float(self.speed_from), float(self.speed_to), float(self.span), float(self.mean)
-
-    @cached_property
-    def _linear(self) -> tuple[Any, ...]:
-        return _FIRST, _SECOND, _STIFFNESS, _DAMPING
-
-    @cached_property
-    def _springs(self) -> tuple[Any, ...]:
-        return PLUS, MINUS, GAP, SPRING_STIFFNESS, CONTACT_TIME
-
-    def fill_rates(self, t: float, y: np.ndarray, out: np.ndarray) -> None:
-        """ẏ into ``out``; the state y is the angles [rad], then their rates [rad/s]."""
-        _rates(t, y, out, self._drive, INERTIA, self._linear, self._springs)
-
-    def fill_derivatives(self, t: float, y: np.ndarray, out: np.ndarray) -> None:
-        """∂ẏ/∂y into ``out``."""
-        _derivatives(y, out, INERTIA, self._linear, self._springs)
 
     def right_hand_side(self, t: float, y: np.ndarray) -> np.ndarray:
         """ẏ of the state y."""
         out = np.empty(2 * NODES)
-        self.fill_rates(t, y, out)
+        fill_rates(t, y, out, self.drive)
         return out
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
         """∂ẏ/∂y of the state y."""
         out = np.empty((2 * NODES, 2 * NODES))
-        self.fill_derivatives(t, y, out)
+        fill_jacobian(y, out)
         return out
 
     def equations(self, pieces: int = 1024) -> Equations:

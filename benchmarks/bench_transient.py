@@ -1,0 +1,87 @@
+"""T1 and T2: a dual mass flywheel with shoes, loose springs and stops, run up in one second; 300 operating points.
+
+Every contender starts from rest and tells the flywheel's relative angle every millisecond.  Over the first 0.1 s it
+must be within 5e-5 of the largest angle of what DOP853 finds at a relative tolerance of 1e-11, and its time counts only
+then; later the clearances rattle, and trajectories part.  CPU time.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import transient_scipy
+from tests.validation import dmf_lcp
+
+HERE = Path(__file__).parent
+SPAN, COMPARED, SAMPLING, STEP = 1.0, 0.1, 1e-3, 1e-4  # s
+WITHIN = 5e-5
+pytestmark = pytest.mark.benchmark(timer=time.process_time)
+
+
+@pytest.fixture(scope="module")
+def error():
+    """Largest deviation of θ0 − θ1 over the first tenth of a second, over the largest angle there."""
+    exact, _ = transient_scipy.run("DOP853", 1e-11, 1e-13, COMPARED, SAMPLING)
+    told = {round(t / SAMPLING): twist for t, twist, *_ in dmf_lcp.REFERENCE}
+    np.testing.assert_allclose(exact[list(told)], list(told.values()), rtol=0, atol=1e-10)
+
+    def measured(twist) -> float:
+        assert len(twist) == round(SPAN / SAMPLING) + 1 and np.isfinite(twist).all()
+        found = np.asarray(twist)[: exact.size] - exact
+        return float(np.abs(found).max() / np.abs(exact).max())
+
+    return measured
+
+
+def _right(deviation: float) -> str:
+    assert deviation <= WITHIN
+    return f"error {deviation:.1e}"
+
+
+# method, relative and absolute tolerance, right-hand side, rounds
+SCIPY = {
+    "SciPy, LSODA 1e-3": ("LSODA", 1e-3, 1e-6, dmf_lcp.right_hand_side, 5),
+    "SciPy, LSODA 1e-4, NumPy right-hand side": ("LSODA", 1e-4, 1e-6, transient_scipy.numpy_rates, 3),
+    "SciPy, Radau 1e-3": ("Radau", 1e-3, 1e-5, dmf_lcp.right_hand_side, 3),
+    "SciPy, Radau 1e-6": ("Radau", 1e-6, 1e-8, dmf_lcp.right_hand_side, 1),
+    "SciPy, RK45 1e-3": ("RK45", 1e-3, 1e-6, dmf_lcp.right_hand_side, 5),
+}
+
+
+@pytest.mark.parametrize("contender", SCIPY)
+def test_t1_scipy(contender, timed, error):
+    method, rtol, atol, rates, rounds = SCIPY[contender]
+
+    def work():
+        return transient_scipy.run(method, rtol, atol, SPAN, SAMPLING, rates)
+
+    twist, calls = work()
+    note = f"{_right(error(twist))}, {calls} right-hand sides"
+    timed(work, task="T1", contender=contender, cases=1, rounds=rounds, note=note)
+
+
+# a script of its own environment, and what it is asked for before the span and the sampling
+PEERS = {
+    "Exudyn, generalised-α 1e-4": ("exudyn", [STEP]),
+    "CVODE 1e-4": ("sundae", [1e-4, 1e-5]),
+}
+
+
+@pytest.mark.parametrize("contender", PEERS)
+def test_t1_peers(contender, enter_time, error, tmp_path):
+    """In processes of their own, which take their own CPU time."""
+    name, asked = PEERS[contender]
+    python = Path(f"{sys.prefix}-{name}") / "bin" / "python"
+    if not python.exists():
+        pytest.skip(f"{name} is not installed: `make bench` does it where it can")
+    command = [str(python), str(HERE / f"peer_{name}.py"), *(str(value) for value in [*asked, SPAN, SAMPLING])]
+    done = subprocess.run(command, check=True, capture_output=True, cwd=tmp_path, env=os.environ)
+    told = json.loads(done.stdout.splitlines()[-1])
+    enter_time("T1", contender, told["seconds"], f"{_right(error(told['twist']))}; version {told['version']}")
