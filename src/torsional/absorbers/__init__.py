@@ -1,5 +1,6 @@
 """Absorber concepts: functions that return named components between the crankshaft and the clutch."""
 
+from torsional.absorbers.arc_spring import ArcSprings, arc_spring_flywheel
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.dual_mass import dual_mass_flywheel
 from torsional.absorbers.friction import with_friction
@@ -7,17 +8,28 @@ from torsional.absorbers.pendulum import CentrifugalPendulum, Rollers, with_pend
 from torsional.absorbers.planetary import planetary_dual_mass_flywheel
 from torsional.absorbers.power_split import cancellation_frequency, power_split_absorber
 from torsional.absorbers.single_mass import single_mass_flywheel
+from torsional.absorbers.spring_design import characteristic, condensed
+from torsional.absorbers.spring_parts import CoilSpring, GuideFriction
+from torsional.absorbers.straight_spring import StraightSprings, straight_spring_flywheel
 from torsional.absorbers.tuned import tuned_flange_flywheel, tuned_secondary_flywheel, tuned_stiffness
 
 __all__ = [
     "Absorber",
+    "ArcSprings",
     "CentrifugalPendulum",
+    "CoilSpring",
+    "GuideFriction",
     "Rollers",
+    "StraightSprings",
+    "arc_spring_flywheel",
     "cancellation_frequency",
+    "characteristic",
+    "condensed",
     "dual_mass_flywheel",
     "planetary_dual_mass_flywheel",
     "power_split_absorber",
     "single_mass_flywheel",
+    "straight_spring_flywheel",
     "tuned_flange_flywheel",
     "tuned_secondary_flywheel",
     "tuned_stiffness",
