@@ -1,0 +1,199 @@
+"""Right-hand side ẏ = f(t, y) of the arrays of time stepping, for integrators that only evaluate it.
+
+y = (q, q̇, Ω_r, I_g of the governors, z of the connections that remember).
+"""
+# mypy: disable-error-code="untyped-decorator,no-any-return"
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.callbacks import law_at
+from torsional.numerics.small_linear import backsolve, factor
+from torsional.numerics.sources import (
+    crank_terms,
+    frame_at,
+    governed_torque,
+    level_at,
+    row_product,
+    row_sum,
+    source_torques,
+)
+from torsional.numerics.stepping_data import Connected, Equations, Rows
+
+
+class Places(NamedTuple):
+    """What a right-hand side needs beside the equations: M (N, N) without pistons and its inverse; where memories are.
+
+    ``memory`` (E,): a connection's place among the memories, or −1; ``governor``, ``memories``: where I_g and z begin
+    in y, of ``size`` entries.
+    """
+
+    mass: Array
+    inverse: Array
+    memory: IntArray
+    governor: int
+    memories: int
+    size: int
+
+
+def places(equations: Equations, bristles: int = 0) -> Places:
+    """Work out masses and places once; ``bristles``: the address of the LuGre kernel, the one memory that is known.
+
+    Raises ModelError for coordinates without mass and for laws with another memory, which has no rate.
+    """
+    connected, n = equations.connected, equations.coordinates
+    remembers = np.flatnonzero((connected.remembers != 0) & (connected.address != 0))
+    if (connected.address[remembers] != bristles).any():
+        remedy = "take the implicit steps, or LuGre friction"
+        raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
+    mass = np.zeros((n, n))
+    add_masses(equations.mass_rows, equations.inertia, mass)
+    if np.linalg.matrix_rank(mass, hermitian=True) < n:
+        raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
+    memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
+    memory[remembers] = np.arange(remembers.size)
+    governor = 2 * n + 1
+    memories = governor + equations.governed.proportional.size
+    return Places(
+        mass, np.asarray(np.linalg.inv(mass), dtype=float), memory, governor, memories, memories + remembers.size
+    )
+
+
+@numba.njit(cache=True, error_model="numpy")
+def add_masses(rows: Rows, inertia: Array, mass: Array) -> None:
+    """Add Σ J_m v_m v_mᵀ to M (N, N)."""
+    for m in range(inertia.size):
+        for i in range(rows.start[m], rows.start[m + 1]):
+            for j in range(rows.start[m], rows.start[m + 1]):
+                mass[rows.column[i], rows.column[j]] += inertia[m] * rows.weight[i] * rows.weight[j]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def add_row(rows: Rows, i: int, factor: float, out: Array) -> None:
+    """Add ``factor`` times row i to ``out`` (N,)."""
+    for k in range(rows.start[i], rows.start[i + 1]):
+        out[rows.column[k]] += factor * rows.weight[k]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def elastic_torque(connected: Connected, e: int, angle: float, rate: float, omega: float) -> float:
+    """Torque [Nm] of a connection's spring, damper and hinges, with or without contact times."""
+    torque = (connected.stiffness[e] + connected.centrifugal[e] * omega * omega) * angle + connected.damping[e] * rate
+    for h in range(connected.hinge_start[e], connected.hinge_start[e + 1]):
+        side = connected.side[h]
+        beyond = side * (angle - connected.gap[h])
+        if connected.change[h] > 0.0:
+            beyond += connected.contact_time[h] * side * rate
+        if beyond > 0.0:
+            torque += side * connected.change[h] * beyond
+    return torque
+
+
+@numba.njit(cache=True, error_model="numpy")
+def normal_load(equations: Equations, e: int, t: float, omega: float, elastic: Array) -> float:
+    """N of a law whose load follows a level, speed and the torques of springs."""
+    c, d = equations.connected, equations.driven
+    load = c.load_constant[e] * level_at(d.level_start, d.level_time, d.level_value, c.load_level[e], t)
+    load += c.load_centrifugal[e] * omega * omega
+    for j in range(c.load_start[e], c.load_start[e + 1]):
+        load += c.load_share[j] * abs(elastic[c.load_of[j]])
+    return max(load, 0.0)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _bristle_rate(values: Array, rate: float, bent: float) -> float:
+    """ż = u − σ0 |u| z/g(u), from parameters σ0, σ1, σ2, g_c, g_s, u_s, … of LuGre friction."""
+    curve = values[3] + (values[4] - values[3]) * math.exp(-((rate / values[5]) ** 2))
+    return rate - values[0] * abs(rate) / curve * bent
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _connection_torques(
+    equations: Equations, at: Places, t: float, y: Array, frame_speed: float, torque: Array, out: Array
+) -> None:
+    """Take the torques of all connections from ``torque`` (N,), and put the rates of memories into ``out``."""
+    c, n = equations.connected, equations.coordinates
+    q, v, count = y[:n], y[n : 2 * n], c.stiffness.size
+    omega = row_product(equations.reference, 0, v) + frame_speed
+    turning = y[2 * n] - frame_speed if math.isfinite(equations.reference_time) else 0.0
+    angle, rate, elastic = np.empty(count), np.empty(count), np.empty(count)
+    for e in range(count):
+        angle[e] = row_product(c.rows, e, q)
+        rate[e] = row_product(c.rows, e, v) - c.follow[e] * turning + c.mean_rate[e] * frame_speed
+        elastic[e] = elastic_torque(c, e, angle[e], rate[e], omega)
+    for e in range(count):
+        total = elastic[e]
+        if c.address[e] != 0:
+            values = c.law_values[c.law_start[e] : c.law_start[e + 1]].copy()
+            if c.load_place[e] >= 0:
+                values[c.load_place[e]] = normal_load(equations, e, t, omega, elastic)
+            bent = 0.0
+            if at.memory[e] >= 0:
+                bent = y[at.memories + at.memory[e]]
+                out[at.memories + at.memory[e]] = _bristle_rate(values, rate[e], bent)
+            law = law_at(c.address[e])
+            total += law(values, angle[e], rate[e], bent, 0.0)[0]
+        add_row(c.rows, e, -total, torque)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _drive(
+    equations: Equations, at: Places, t: float, y: Array, frame: tuple[float, float], torque: Array, out: Array
+) -> None:
+    """Add the torques of sources and governors, whose integrals' rates go into ``out``."""
+    d, g_all, n = equations.driven, equations.governed, equations.coordinates
+    extra, torques = np.zeros(d.multiple.size), np.empty(d.multiple.size)
+    for g in range(g_all.proportional.size):
+        wanted = level_at(d.level_start, d.level_time, d.level_value, g_all.wanted_of[g], t)
+        speed = row_product(g_all.sense, g, y[n : 2 * n]) + frame[0] * row_sum(g_all.sense, g)
+        given, out[at.governor + g] = governed_torque(g_all, g, wanted - speed, y[at.governor + g])
+        if g_all.source_start[g] == g_all.source_start[g + 1]:
+            add_row(g_all.act, g, given, torque)
+        for k in range(g_all.source_start[g], g_all.source_start[g + 1]):
+            extra[g_all.source[k]] += given
+    source_torques(d, t, frame[1], y[:n], extra, torques)
+    for s in range(torques.size):
+        add_row(d.rows, s, torques[s], torque)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _accelerate(
+    equations: Equations, at: Places, y: Array, frame: tuple[float, float], torque: Array, out: Array
+) -> None:
+    """M(q) q̈ = torque, with the moving pistons in M and in the torque."""
+    d, n = equations.driven, equations.coordinates
+    pistons = d.crank_mass.size
+    if pistons == 0:
+        out[:] = at.inverse @ torque
+        return
+    constant, inertia, mass = np.empty(pistons), np.empty(pistons), at.mass.copy()
+    crank_terms(d, frame[1], frame[0], y[:n], y[n : 2 * n], constant, inertia)
+    for m in range(pistons):
+        add_row(d.crank_rows, m, constant[m], torque)
+    add_masses(d.crank_rows, inertia, mass)
+    order = np.empty(n, dtype=np.int64)
+    factor(mass, order)
+    backsolve(mass, order, torque)
+    out[:] = torque
+
+
+@numba.njit(cache=True, error_model="numpy")
+def fill_rates(equations: Equations, at: Places, t: float, y: Array, out: Array) -> None:
+    """ẏ into ``out``."""
+    n, torque = equations.coordinates, np.zeros(equations.coordinates)
+    frame = frame_at(equations.frame_time, equations.frame_value, t)
+    _connection_torques(equations, at, t, y, frame[0], torque, out)
+    _drive(equations, at, t, y, frame, torque, out)
+    out[:n] = y[n : 2 * n]
+    _accelerate(equations, at, y, frame, torque, out[n : 2 * n])
+    out[2 * n] = 0.0
+    if math.isfinite(equations.reference_time):
+        omega = row_product(equations.reference, 0, y[n : 2 * n]) + frame[0]
+        out[2 * n] = (omega - y[2 * n]) / equations.reference_time
