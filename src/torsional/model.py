@@ -58,7 +58,8 @@ class Landmarks:
 class Model:
     """A machine: ``components`` common to all gears, ``gears`` by name, engine, operating range, landmarks.
 
-    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies).
+    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies);
+    ``detail`` the absorber's inner parts (shoes, segments, their friction), which take their places with `detailed`.
     """
 
     name: str
@@ -70,6 +71,7 @@ class Model:
     absorber: str = ""
     document: Mapping[str, Any] = field(default_factory=dict)
     parts: int = 1
+    detail: Mapping[str, Component] = field(default_factory=dict)
 
     @property
     def gear_names(self) -> tuple[str, ...]:
@@ -123,6 +125,10 @@ class Model:
                 "the model has no full-load curve", where="engine.full_load", remedy="give operation.torque"
             )
         return float(np.max(self.engine.full_load.torques))
+
+    def detailed(self) -> Model:
+        """The model as time-domain analyses take it, the absorber's inner parts in place; itself where it has none."""
+        return replace(self, components={**self.components, **self.detail}, detail={}) if self.detail else self
 
     def replaced(self, **changes: Any) -> Model:
         """A copy with some fields changed."""

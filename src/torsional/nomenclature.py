@@ -51,6 +51,7 @@ _TABLE = (
     Quantity("centrifugal_stiffness", "s", "kgm²", "stiffness over speed squared", "pendulum stiffness", "kgm²"),
     Quantity("mass", "m", "kg", "mass", "mass", "kg", 1e-3, 1e5),
     Quantity("length", "l", "m", "length", "length", "mm", 1e-4, 20.0),
+    Quantity("presliding", "δ", "m", "elastic way before sliding", "length", "µm", 1e-8, 1e-2),
     Quantity("area", "A", "m²", "area", "area", "cm²", 1e-7, 10.0),
     Quantity("volume", "V", "m³", "volume", "volume", "cm³", 1e-7, 1.0),
     Quantity("density", "ρ", "kg/m³", "density", "density", "kg/m³", 0.1, 2.5e4),

@@ -18,6 +18,7 @@ from torsional.files.schema import absorber as schema
 from torsional.files.schema.fields import fitting
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox
 from torsional.files.schema.springs import Friction
+from torsional.files.spring_flywheels import arc_springs, straight_springs
 from torsional.model import Gear, Landmarks
 
 Parts = dict[str, Component]
@@ -32,14 +33,19 @@ class Machine:
     gears: dict[str, Gear] = field(default_factory=dict)
     landmarks: Landmarks = field(default_factory=Landmarks)
     absorber: str = ""
+    detail: Parts = field(default_factory=dict)
 
     def add(self, parts: Mapping[str, Component], path: str) -> None:
         """Take in the parts of a block; a name that is taken is refused."""
         for name, part in parts.items():
-            if name in self.parts:
-                problem = f"the name '{name}' is taken by {self.origin[name]}"
-                raise ModelError(problem, where=path, remedy="give the component another name")
+            self.refuse_taken(name, path)
             self.parts[name], self.origin[name] = part, path
+
+    def refuse_taken(self, name: str, path: str) -> None:
+        """A name is taken by another block, or by an inner part of the absorber."""
+        if name in self.parts or name in self.detail:
+            problem = f"the name '{name}' is taken by {self.origin.get(name, 'absorber')}"
+            raise ModelError(problem, where=path, remedy="give the component another name")
 
     def mark(self, **places: Any) -> None:
         """Name landmarks."""
@@ -53,7 +59,7 @@ def machine(file: ModelFile, throws: int | None) -> Machine:
     if concept:
         _engine_side(built, file.crankshaft, concept, throws)
         built.add(concept.components, "absorber")
-        built.absorber = concept.kind
+        built.absorber, built.detail = concept.kind, dict(concept.detail)
         built.mark(crankshaft=concept.input, springs=concept.springs)
     if file.clutch and concept:
         built.add(_clutch(file.clutch, concept.output), "clutch")
@@ -180,6 +186,8 @@ _CONCEPTS: dict[type[schema.AbsorberBlock], Callable[..., Absorber]] = {
     schema.TunedDualMassFlywheel: _tuned,
     schema.PowerSplit: _power_split,
     schema.PlanetaryDualMassFlywheel: _planetary,
+    schema.StraightSpringFlywheel: lambda b: absorbers.condensed(straight_springs(b)),
+    schema.ArcSpringFlywheel: lambda b: absorbers.condensed(arc_springs(b)),
 }
 
 
@@ -240,8 +248,7 @@ def _listed_gears(built: Machine, file: ModelFile) -> None:
         parts: Parts = {}
         for name, part in block.components.items():
             path = f"gears.{gear}.components.{name}"
-            if name in built.parts:
-                raise ModelError(f"the name '{name}' is taken by {built.origin[name]}", where=path)
+            built.refuse_taken(name, path)
             parts[name] = component(part, path)
             built.origin.setdefault(name, path)
         built.gears[gear] = Gear(block.ratio, parts)

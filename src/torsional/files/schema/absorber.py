@@ -19,11 +19,14 @@ from torsional.files.schema.fields import (
     Quantity,
     Speed,
     Stiffness,
+    Torque,
 )
 from torsional.files.schema.springs import DampedSpring, Friction, Spring, check_spring
 
 Order = Annotated[float, Quantity("engine_order", above=0)]
 GearQuotient = Annotated[float, Quantity("ratio", above=0)]
+Whole = Annotated[int, Field(ge=1, le=100)]
+Clearance = Annotated[float | list[float], Quantity("relative_angle", least=0, shape="one or list")]
 Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
 
 
@@ -160,7 +163,94 @@ class PlanetaryDualMassFlywheel(AbsorberBlock, DampedSpring):
     switch: SwitchBlock | None = None
 
 
+class CoilSpringBlock(Block):
+    """A coil spring; of an arc spring the lengths are those along its arc."""
+
+    rate: Annotated[float, Quantity("spring_rate", above=0)] = Field(description="of the whole spring")
+    free_length: Length
+    solid_length: Length = Field(description="with its coils touching")
+    mass: Annotated[float, Quantity("mass", least=0)] = 0.0
+
+
+class GuideFrictionBlock(Block):
+    """LuGre friction of what slides in a channel, per newton of the load that presses it."""
+
+    sliding_coefficient: Annotated[float, Quantity("friction_coefficient", above=0)]
+    static_coefficient: Annotated[float, Quantity("friction_coefficient", above=0)] | None = Field(
+        None, description="when it breaks loose; as sliding where none is given"
+    )
+    stribeck_velocity: Annotated[float, Quantity("velocity", above=0)] = Field(0.02, description="between the two")
+    presliding: Annotated[float, Quantity("presliding", above=0)] = 2e-5
+    bristle_time: Annotated[float, Quantity("time", least=0)] = Field(
+        1e-5, description="damping of the bristles over their stiffness"
+    )
+    viscous_coefficient: Annotated[float, Quantity("number", least=0)] = Field(
+        0.01, description="what the coefficient gains per m/s"
+    )
+
+
+class SpringFlywheelFields(AbsorberBlock):
+    """What dual mass flywheels share that are given by their springs."""
+
+    primary_inertia: Inertia = Field(description="engine side, without what slides in the channels")
+    secondary_inertia: Inertia = Field(description="clutch side, with clutch cover")
+    channels: Whole = Field(description="round the circle")
+    radius: Length = Field(description="at which the springs' force acts")
+    channel_arc: Annotated[float, Quantity("relative_angle", above=0)] = Field(
+        description="of one channel, between the primary's tabs"
+    )
+    spring: CoilSpringBlock
+    inner_spring: CoilSpringBlock | None = Field(None, description="a shorter one inside, which engages later")
+    secondary_clearance: Clearance = Field(0.0, description="of the flange's tabs at rest; one value or [drive, coast]")
+    stop_angle: Annotated[float, Quantity("relative_angle", above=0)] = Field(description="between the flywheels")
+    stop_stiffness: Stiffness = 2e6
+    tab_stiffness: Stiffness = 1e6
+    bind_stiffness: Stiffness = Field(5e5, description="of solid coils")
+    contact_time: Annotated[float, Quantity("time", least=0)] = Field(2e-5, description="damping over stiffness of all")
+    friction: GuideFrictionBlock | None = Field(None, description="on the primary's guide")
+    grease_damping: Damping = Field(0.0, description="of each body in the channels")
+    preloaded: bool = Field(False, description="springs longer than their channel are meant")
+    rated_torque: Torque | None = Field(None, description="refused where a spring is solid before")
+    damping: Damping | None = Field(
+        None, description="viscous, between the flywheels, for all friction in linear and periodic analyses"
+    )
+
+
+class StraightSpringFlywheel(SpringFlywheelFields):
+    """A dual mass flywheel with rows of straight springs and sliding shoes between them."""
+
+    type: Literal["straight_spring_flywheel"]
+    springs_per_row: Whole = Field(description="of each channel, one shoe more than springs")
+    shoe_mass: Mass
+    end_shoe_mass: Mass
+    shoe_width: Length = Field(description="along the row, from spring to spring")
+    end_shoe_width: Length
+    primary_clearance: Clearance | None = Field(
+        None, description="of the primary's tabs at rest; all play spread evenly where none is given"
+    )
+    play_factors: Annotated[list[float], Quantity("ratio", above=0, shape="list")] | None = Field(
+        None, description="how many times the play each channel has, as tolerances make them differ"
+    )
+
+
+class ArcSpringFlywheel(SpringFlywheelFields):
+    """A dual mass flywheel with arc springs that slide in their channels."""
+
+    type: Literal["arc_spring_flywheel"]
+    segments: Whole = Field(8, description="of each arc spring, at least 6")
+    end_mass: Annotated[float, Quantity("mass", least=0)] = Field(0.0, description="cap at each end of an arc spring")
+    inner_friction: GuideFrictionBlock | None = Field(
+        None, description="between the springs; as on the guide if left out"
+    )
+
+
 Absorber = Annotated[
-    SingleMassFlywheel | DualMassFlywheel | TunedDualMassFlywheel | PowerSplit | PlanetaryDualMassFlywheel,
+    SingleMassFlywheel
+    | DualMassFlywheel
+    | TunedDualMassFlywheel
+    | PowerSplit
+    | PlanetaryDualMassFlywheel
+    | StraightSpringFlywheel
+    | ArcSpringFlywheel,
     Field(discriminator="type"),
 ]
