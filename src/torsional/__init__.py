@@ -19,7 +19,7 @@ _HOMES = {
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
     "errors": "ModelError TorsionalError",
     "files": "changed expanded load_model",
-    "laws": "Coulomb Hinges Jenkins Law LuGre Polynomial Table",
+    "laws": "Contacts Coulomb Hinges Jenkins Karnopp Law LuGre Polynomial Stribeck Table contact_time hysteresis_loop",
     "model": "Gear Landmarks Model Operation",
     "powertrain": "Powertrain",
     "quantities": "acceleration amplitude angular_velocity bound dominant_element irregularity named_modes order_share "
@@ -35,7 +35,7 @@ _HOMES = {
     "solvers.periodic": "Load Variation model_response periodic_response subharmonic_boundary subharmonic_map "
     "varied_response",
     "solvers.run_up": "full_load_response run_up_response",
-    "stamps": "Connection Constraint Mass SpeedSwitch",
+    "stamps": "Connection Constraint Mass NormalLoad SpeedSwitch",
     "system": "System assemble",
 }
 _WHERE = {name: home for home, names in _HOMES.items() for name in names.split()}

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Law, LuGre, Polynomial, Table, plain
+from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Karnopp, Law, LuGre, Polynomial, Stribeck, Table, plain
 from torsional.numerics.callbacks import law_at
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
@@ -30,6 +30,8 @@ LAWS: dict[str, Law] = {
     "table": Table(((-0.2, -300.0), (-0.1, -50.0), (0.0, 0.0), (0.05, 0.0), (0.1, 80.0), (0.3, 1000.0))),
     "coulomb": Coulomb(50.0, regularisation_rate=0.1),
     "jenkins": Jenkins(50.0, 25e3),
+    "stribeck": Stribeck(40.0, 60.0, 0.5, 0.05, normal_load=1.3, grease_damping=3.0),
+    "karnopp": Karnopp(40.0, 60.0, 0.5, 4e4, normal_load=1.3, grease_damping=3.0),
     "lugre": LuGre(
         3e4,
         15.0,
@@ -67,6 +69,10 @@ def test_derivatives_are_those_of_the_values(name: str, angle: float, rate: floa
     assume(abs(KINKS.get(name, np.array([np.inf])) - angle).min() > 2 * h[0])
     if name == "jenkins":
         assume(abs(abs(point[2] + rate * step) - 0.002) > 1e-8 + 1e-6 * abs(rate * step))
+    if name == "karnopp":
+        held = abs(float(law.steady(rate)) - 3.0 * rate) / 4e4  # type: ignore[attr-defined]
+        assume(abs(abs(point[2] + rate * step) - held) > 2e-8 + 2e-6 * abs(rate) * (step + 1e-3))
+        assume(min(abs(abs(rate) - 0.5), abs(abs(rate) - 1.0)) > 1e-5)
     for i, column in enumerate((1, 2, 3)):
         if law.remembers and i == 0 and step == 0:
             continue  # by agreement those of sticking, see below
@@ -77,7 +83,7 @@ def test_derivatives_are_those_of_the_values(name: str, angle: float, rate: floa
             assert slopes[value] == pytest.approx(exact[derivative], abs=scale + 1e-9 / h[i] ** 0.5)
 
 
-@pytest.mark.parametrize(("name", "stuck"), [("jenkins", 25e3), ("lugre", 1.3 * 3e4)])
+@pytest.mark.parametrize(("name", "stuck"), [("jenkins", 25e3), ("karnopp", 4e4), ("lugre", 1.3 * 3e4)])
 def test_with_no_step_friction_keeps_its_memory_and_has_the_stiffness_of_sticking(name: str, stuck: float) -> None:
     for memory in (0.0, 0.0007, -0.0012):
         torque, d_angle, _, d_memory, kept, m_angle, _, m_memory = told(LAWS[name], 0.4, 0.0, memory, 0.0)
@@ -122,7 +128,7 @@ def test_importing_compiles_nothing_and_an_address_comes_from_the_disk() -> None
     code = (
         "import torsional.laws as laws\n"
         "kernels = [law.kernel for law in vars(laws).values() if hasattr(law, 'kernel')]\n"
-        "assert len(kernels) == 7 and not any(kernel.overloads for kernel in kernels)\n"
+        "assert len(kernels) == 9 and not any(kernel.overloads for kernel in kernels)\n"
         "laws.Jenkins(1.0, 1.0).address\n"
         "hits = laws.Jenkins.kernel.stats.cache_hits\n"
         "print(sum(hits.values()))\n"

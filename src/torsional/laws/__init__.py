@@ -20,8 +20,11 @@ from torsional.laws.base import Law, Told, plain
 from torsional.laws.contacts import Contacts, HingeRows, contact_time, hinge_rows
 from torsional.laws.friction import Coulomb, Jenkins
 from torsional.laws.hinges import Hinges
+from torsional.laws.karnopp import Karnopp
+from torsional.laws.loops import Loop, hysteresis_loop
 from torsional.laws.lugre import LuGre
 from torsional.laws.smooth import Polynomial, Table
+from torsional.laws.stribeck import Stribeck
 
 __all__ = [
     "Contacts",
@@ -29,12 +32,16 @@ __all__ = [
     "HingeRows",
     "Hinges",
     "Jenkins",
+    "Karnopp",
     "Law",
+    "Loop",
     "LuGre",
     "Polynomial",
+    "Stribeck",
     "Table",
     "Told",
     "contact_time",
     "hinge_rows",
+    "hysteresis_loop",
     "plain",
 ]

@@ -23,6 +23,15 @@ def not_negative(value: float, field: str, unit: str) -> None:
         raise ModelError("must not be negative", where=field, found=f"{value}", allowed=f">= 0 {unit}".strip())
 
 
+def breakaway_above_sliding(sliding: float, breakaway: float) -> None:
+    """Refuse a breakaway torque that is below the sliding torque."""
+    if not sliding <= breakaway < math.inf:
+        allowed = f"at least the sliding torque, {sliding:g} Nm"
+        raise ModelError(
+            "must not be below sliding", where="breakaway_torque", found=f"{breakaway:g} Nm", allowed=allowed
+        )
+
+
 def rising_points(points: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
     """Angles [rad] and torques [Nm] of two or more points; refused unless the angles rise and no torque falls."""
     rows = np.asarray(points, dtype=float)

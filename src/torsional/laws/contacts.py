@@ -91,7 +91,7 @@ class Contacts(Law):
     ) -> Contacts:
         """End stops at two angles [rad]; raises ModelError unless ``low`` is below ``high``.
 
-        >>> Contacts.between(-0.5, 0.7, 1e6).distance_to_stop(0.2, torque=1.0)
+        >>> Contacts.between(-0.5, 0.75, 1e6).distance_to_stop(0.25, torque=1.0)
         0.5
         """
         if not low < high:

@@ -13,9 +13,8 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
-from torsional.errors import ModelError
 from torsional.laws.base import Law, Told
-from torsional.laws.checks import not_negative, positive
+from torsional.laws.checks import breakaway_above_sliding, not_negative, positive
 from torsional.numerics.arrays import Array
 
 LOAD = 6
@@ -114,9 +113,7 @@ class LuGre(Law):
         for name in ("bristle_damping", "viscous_damping", "grease_damping"):
             not_negative(getattr(self, name), name, "Nms/rad")
         not_negative(self.normal_load, "normal_load", "")
-        if not self.sliding_torque <= self.breakaway_torque < math.inf:
-            found, allowed = f"{self.breakaway_torque:g} Nm", f"at least the sliding torque, {self.sliding_torque:g} Nm"
-            raise ModelError("must not be below sliding", where="breakaway_torque", found=found, allowed=allowed)
+        breakaway_above_sliding(self.sliding_torque, self.breakaway_torque)
 
     @property
     def parameters(self) -> Array:
