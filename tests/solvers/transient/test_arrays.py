@@ -9,10 +9,12 @@ import pytest
 
 from torsional.components import Coupling, Damper, GearPair, Inertia, Shaft
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Hinges, LuGre, Polynomial, hinge_rows
+from torsional.laws import Contacts, Hinges, LuGre, Polynomial, Stribeck, hinge_rows
+from torsional.numerics.explicit_march import explicit_march
 from torsional.numerics.stepping_data import Connected, Rows
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.arrays import connected, masses, with_viscous_losses
+from torsional.solvers.transient.problem import Problem
 from torsional.stamps import Mass, NormalLoad, SpeedSwitch
 from torsional.system import System, assemble
 
@@ -33,7 +35,7 @@ PARTS: dict[str, Any] = {
     "engine": Inertia(1.0),
     "flywheel": Coupling("pinion", "engine", STAGES, damping=5.0),
     "pinion": Inertia(0.1),
-    "bearing": Damper("pinion", damping=0.7),
+    "bearing": Damper("pinion", damping=7.0),
     "wheel": Wheel(),
     "gear": GearPair("pinion", "wheel", ratio=-2.0),
     "shaft": Shaft("wheel", "vehicle", 1e5, damping=40.0),
@@ -149,3 +151,56 @@ def test_loads_refused() -> None:
 def test_hinge_rows_are_a_property_of_the_data() -> None:
     assert hinge_rows(None) is None and hinge_rows(BRISTLES) is None
     assert hinge_rows(Contacts.lash(0.01, 1e5, 1e-3, damper="cut")) is None
+
+
+# --- motion ---
+
+FOLLOWING = 0.02
+
+
+def independent(system: System, speed: float, times: Any, start: Any) -> Any:
+    """The same line by a stiff integrator over the System's own matrices, laws and loads."""
+    from scipy.integrate import solve_ivp
+
+    c, n = system.connections, len(system.coordinates)
+    settled = system.switched(speed)
+    rub: Any = c.names.index("rub")
+    load: Any = c.loads[rub]
+
+    def flow(t: float, y: Any) -> Any:
+        q, v, (z, turning) = y[:n], y[n : 2 * n], y[2 * n :]
+        along = np.where(np.abs(c.weights.sum(axis=1)) < 1e-12, 0.0, c.weights.sum(axis=1))
+        twist = c.weights @ q
+        rate = c.weights @ v + along * np.where(c.whole_speed, speed, speed - turning)
+        torque = c.stiffness * twist + c.damping * rate
+        for i, law in enumerate(c.laws):
+            if law is not None and i != rub:
+                torque[i] += float(law.torque(twist[i], rate[i]))
+        pressed = NormalLoad(min(t / 0.02, 1.0) * load.constant, load.centrifugal, load.shares)
+        n_now = pressed.at(speed + v[0], dict(zip(c.names, torque, strict=True)))
+        curve = 0.02 + 0.01 * np.exp(-((rate[rub] / 0.5) ** 2))
+        bending = rate[rub] - 500.0 * abs(rate[rub]) / curve * z
+        torque[rub] += n_now * (500.0 * z + 0.5 * bending)
+        return np.concatenate(
+            [v, np.linalg.solve(settled.M, -c.weights.T @ torque), [bending, (speed + v[0] - turning) / FOLLOWING]]
+        )
+
+    found = solve_ivp(flow, (times[0], times[-1]), start, "LSODA", times, rtol=1e-9, atol=1e-11, max_step=1e-4)
+    return found.y
+
+
+def test_the_arrays_move_as_the_system_does() -> None:
+    """Stages, lash, a gear, a rising pedal, friction under loads, a brake and a bearing: from rest in the frame."""
+    system = line(drag=Coupling("ground", "vehicle", Stribeck(30.0, 40.0, 5.0, 1.0), whole_speed=True))
+    levels = {"pedal": ([0.0, 0.02], [0.0, 1.0])}
+    problem = Problem.of(system, (), 80.0, levels=levels, reference_time=FOLLOWING)
+    n, times = len(system.coordinates), np.linspace(0.0, 0.05, 11)
+    start = np.concatenate([np.linspace(0.08, -0.02, n), np.zeros(n), [0.0, 80.0]])
+    marched = explicit_march(
+        problem.equations, times, start[:n], start[n : 2 * n], tolerance=1e-9, bristles=BRISTLES.address
+    )
+    expected = independent(system, 80.0, times, start)
+    scale = np.abs(expected).max(axis=1)
+    np.testing.assert_allclose(marched.angles.T, expected[:n], atol=2e-7 * scale[:n].max())
+    np.testing.assert_allclose(marched.rates.T, expected[n : 2 * n], atol=1e-6 * scale[n : 2 * n].max())
+    assert np.abs(expected[2 * n]).max() > 1e-5  # the bristles bend
