@@ -101,5 +101,14 @@ def _laws() -> None:
     """The loops over laws once, and the kernel of each."""
     law = laws.Hinges.staged([(1.0, 1.0)], lash=0.1)
     law.march(law.torque(np.linspace(-1.0, 1.0, 5000)), 1.0)
-    for kind in (laws.Coulomb, laws.Jenkins, laws.LuGre, laws.Polynomial, laws.Table):
+    for kind in (
+        laws.Contacts,
+        laws.Coulomb,
+        laws.Jenkins,
+        laws.Karnopp,
+        laws.LuGre,
+        laws.Polynomial,
+        laws.Stribeck,
+        laws.Table,
+    ):
         address_of(kind.kernel)
