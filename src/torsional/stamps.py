@@ -92,6 +92,27 @@ class NormalLoad:
 
 
 @dataclass(frozen=True, slots=True)
+class Swing:
+    """The path of a pendulum, whose linear stamps are a mass m c² and a centrifugal stiffness m c² n² beside.
+
+    ``mass`` m [kg], ``distance`` c [m] from the axis, ``curvature_radius`` ρ0 [m] at rest, ``flattening`` λ of the path
+    (see `torsional.numerics.pendulum_path`), ``place`` [rad] on the node ``carrier`` from the top.
+    """
+
+    carrier: str
+    mass: float
+    distance: float
+    curvature_radius: float
+    flattening: float
+    place: float = 0.0
+
+    @property
+    def centrifugal_stiffness(self) -> float:
+        """m c² n² = m c² (c/ρ0 − 1) [Nms²/rad], which the exact motion replaces."""
+        return self.mass * self.distance**2 * (self.distance / self.curvature_radius - 1.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Connection:
     """Torque k (1 + iη) w·θ + c w·θ̇ + Ω² s w·θ + law(w·θ, w·θ̇) acting along w.
 
@@ -99,7 +120,8 @@ class Connection:
     ``centrifugal_stiffness`` s [Nm s²/rad] times the squared mean speed of the node ``carrier``.  ``load``: the normal
     load of a ``law`` that has one.  With ``whole_speed`` damper and law see the whole speed w·(θ̇ + mean rotation), as
     a brake or a road load does; else the deviation from the mean rotation.  In the frequency domain, where mean losses
-    belong to the mean torque, such a law is left out.
+    belong to the mean torque, such a law is left out.  ``swing``: the path of the pendulum it suspends, for motion in
+    time.
     Raises ModelError for a load beside a law that takes none.
     """
 
@@ -113,6 +135,7 @@ class Connection:
     law: Law | None = None
     load: NormalLoad | None = None
     whole_speed: bool = False
+    swing: Swing | None = None
 
     def __post_init__(self) -> None:
         if self.load is None:

@@ -16,7 +16,7 @@ from torsional.laws import Law
 from torsional.numerics.arrays import Array
 from torsional.numerics.null_space import transformed
 from torsional.powertrain import Powertrain
-from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch
+from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch, Swing
 from torsional.structure import weight_rows
 
 BoolArray = NDArray[np.bool_]
@@ -38,7 +38,8 @@ class Connections:
 
     ``stiffness`` [Nm/rad], ``damping`` [Nms/rad], ``loss_factor`` [-], ``centrifugal_stiffness`` [Nms²/rad] for the
     squared speed of the reference node, ``laws`` (None where linear), ``loads`` (None where constant: the law has
-    it), their ``centrifugal`` referred to that node too; ``whole_speed``: damper and law see the whole speed.
+    it), their ``centrifugal`` referred to that node too; ``whole_speed``: damper and law see the whole speed;
+    ``swings``: paths of the pendulums that they suspend.
     """
 
     names: tuple[str, ...]
@@ -50,6 +51,7 @@ class Connections:
     laws: tuple[Law | None, ...]
     loads: tuple[NormalLoad | None, ...]
     whole_speed: BoolArray
+    swings: tuple[Swing | None, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +121,8 @@ class System:
         named: tuple[object, ...] = (self.nodes, c.names, m.names, m.switches, c.laws)
         if any(c.loads) or c.whole_speed.any():
             named = (*named, c.loads, c.whole_speed.tolist())
+        if any(c.swings):
+            named = (*named, c.swings)
         told = hashlib.sha256(repr(named).encode())
         for array in values:
             told.update(array.tobytes())
@@ -207,6 +211,7 @@ def assemble(powertrain: Powertrain) -> System:
             tuple(_pressed(c) for c in connections),
             tuple(loads),
             np.array([c.whole_speed for c in connections], dtype=bool),
+            tuple(c.swing for c in connections),
         ),
     )
 

@@ -10,7 +10,8 @@ from typing import Literal
 from torsional.absorbers.base import Absorber
 from torsional.components import checks
 from torsional.errors import ModelError
-from torsional.stamps import Connection, Mass, Stamp
+from torsional.laws import Contacts, Law
+from torsional.stamps import Connection, Mass, Stamp, Swing
 
 Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
 
@@ -43,6 +44,10 @@ class CentrifugalPendulum:
     n² = c/ρ0 − 1, ρ0 the radius of curvature at rest (Denman, J. Sound Vib. 159 (1992) 251).  ``damping`` [Nms/rad].
     With ``rollers`` ``order`` stays that of the path.
 
+    In time the motion along the path is exact.  ``count`` pendulums, evenly placed, share the mass and move each on its
+    own, as weight makes them at low speed (nodes ``pendulum_1``, … instead of one); one alone stands for all of them.
+    ``stop`` [m]: way along the path to the stops, of ``stop_stiffness`` [N/m] and contact time ``stop_time`` [s].
+
     >>> p = CentrifugalPendulum("rotor", mass=1.0, distance=0.1 * (1 + 1 / 9), order=3.0)
     >>> round(p.curvature_radius, 9)
     0.011111111
@@ -55,8 +60,13 @@ class CentrifugalPendulum:
     damping: float = 0.0
     path: Path = "circular"
     rollers: Rollers | None = None
+    count: int = 1
+    stop: float | None = None
+    stop_stiffness: float = 1e7
+    stop_time: float = 1e-5
 
     def __post_init__(self) -> None:
+        self._check_stops()
         checks.positive(self.mass, "mass", "mass")
         checks.positive(self.distance, "distance", "length")
         checks.positive(self.order, "order", "engine_order")
@@ -96,17 +106,51 @@ class CentrifugalPendulum:
 
     def stamps(self, name: str) -> Iterator[Stamp]:
         """½ m c² ψ̇² and the centrifugal spring m c² n² Ω² along ψ − θ; rollers as two more masses."""
+        for number in range(self.count):
+            own = name if self.count == 1 else f"{name}_{number + 1}"
+            yield from self._one(own, 2.0 * math.pi * number / self.count)
+
+    def _one(self, name: str, place: float) -> Iterator[Stamp]:
+        share = 1.0 / self.count
         along = {self.carrier: -1.0, name: 1.0}
-        yield Mass(name, {name: 1.0}, self.mass * self.distance**2)
+        yield Mass(name, {name: 1.0}, share * self.mass * self.distance**2)
         if self.rollers:
             half, spin = self.distance / 2, self.distance / (2 * self.rollers.radius)
             way = {self.carrier: self.rollers.distance - half, name: half}
-            yield Mass(f"{name}.rollers", way, self.rollers.mass)
-            yield Mass(f"{name}.roller_spin", {self.carrier: 1.0 + spin, name: -spin}, self.rollers.inertia)
-        lift = self._stiffness
+            turn = {self.carrier: 1.0 + spin, name: -spin}
+            yield Mass(f"{name}.rollers", way, share * self.rollers.mass)
+            yield Mass(f"{name}.roller_spin", turn, share * self.rollers.inertia)
+        bend = flattening(self.path, self.order)
         yield Connection(
-            f"{name}.suspension", along, damping=self.damping, centrifugal_stiffness=lift, carrier=self.carrier
+            f"{name}.suspension",
+            along,
+            damping=share * self.damping,
+            centrifugal_stiffness=share * self._stiffness,
+            carrier=self.carrier,
+            law=self._stops,
+            swing=Swing(self.carrier, share * self.mass, self.distance, self.curvature_radius, bend, place),
         )
+
+    @property
+    def _stops(self) -> Law | None:
+        """The end stops of one pendulum, along ψ − θ = s/c."""
+        if self.stop is None:
+            return None
+        reach, stiffness = self.stop / self.distance, self.stop_stiffness * self.distance**2
+        return Contacts.between(-reach, reach, stiffness, self.stop_time)
+
+    def _check_stops(self) -> None:
+        if self.count != int(self.count) or self.count < 1:
+            raise ModelError("a whole number of pendulums is wanted", where="count", found=f"{self.count}")
+        if self.stop is None:
+            return
+        checks.positive(self.stop, "stop", "length")
+        checks.positive(self.stop_stiffness, "stop_stiffness", "spring_rate")
+        checks.not_negative(self.stop_time, "stop_time", "time")
+        end = path_end(self.path, self.order, self.distance)
+        if self.stop >= end:
+            found, allowed = f"{self.stop:g} m", f"less than {end:g} m"
+            raise ModelError("the path ends before the stop", where="stop", found=found, allowed=allowed)
 
 
 def tuning_order(path: Path, order: float, distance: float, amplitude: float) -> float:
@@ -122,9 +166,7 @@ def tuning_order(path: Path, order: float, distance: float, amplitude: float) ->
     from scipy.integrate import quad  # imported where used: scipy takes longer to import than a whole modal analysis
     from scipy.special import ellipk
 
-    rho = distance / (1 + order**2)
-    ends = {"circular": math.pi * rho, "cycloid": rho}  # the others end where their curvature does
-    end = ends.get(path, distance / (order * math.sqrt(1 + order**2)))
+    rho, end = distance / (1 + order**2), path_end(path, order, distance)
     if not 0 < amplitude <= end:
         found, allowed = f"{amplitude:g} m", f"above 0, up to {end:g} m"
         raise ModelError("the pendulum's path ends before", where="amplitude", found=found, allowed=allowed)
@@ -153,6 +195,16 @@ def squared_distance(path: Path, order: float, distance: float, arc: float) -> f
 
     x, y, *_ = path_at(distance / (1 + order**2), flattening(path, order), distance, arc)
     return float(x * x + y * y)
+
+
+def path_end(path: Path, order: float, distance: float) -> float:
+    """Arc length [m] at which a path ends: the circle where it meets itself, the others where their curvature does.
+
+    >>> round(path_end("cycloid", 3.0, 0.1), 12)
+    0.01
+    """
+    rho = distance / (1 + order**2)
+    return {"circular": math.pi * rho, "cycloid": rho}.get(path, distance / (order * math.sqrt(1 + order**2)))
 
 
 def flattening(path: Path, order: float) -> float:

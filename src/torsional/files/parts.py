@@ -31,7 +31,19 @@ def pendulum(block: PendulumFields, carrier: str) -> CentrifugalPendulum:
     """A centrifugal pendulum on a carrier."""
     r = block.rollers
     rollers = Rollers(r.mass, r.inertia, r.radius, r.distance) if r else None
-    return CentrifugalPendulum(carrier, block.mass, block.distance, block.order, block.damping, block.path, rollers)
+    return CentrifugalPendulum(
+        carrier,
+        block.mass,
+        block.distance,
+        block.order,
+        block.damping,
+        block.path,
+        rollers,
+        block.count,
+        block.stop,
+        block.stop_stiffness,
+        block.stop_time,
+    )
 
 
 def _shaft(b: schema.ShaftPart) -> Component:

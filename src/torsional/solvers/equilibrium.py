@@ -184,10 +184,11 @@ def _carrying(system: System) -> Array:
 
 
 def _without_friction(system: System) -> System:
-    """The system without the laws that carry no mean torque."""
+    """The system without the laws that carry no mean torque; a pendulum hangs between its stops."""
     c = system.connections
-    pairs = zip(c.laws, c.whole_speed, strict=True)
-    laws = tuple(law if law and law.carries_mean_torque and not whole else None for law, whole in pairs)
+    idle = c.whole_speed | (c.centrifugal_stiffness > 0)
+    pairs = zip(c.laws, idle, strict=True)
+    laws = tuple(law if law and law.carries_mean_torque and not without else None for law, without in pairs)
     return dataclasses.replace(system, connections=dataclasses.replace(c, laws=laws))
 
 

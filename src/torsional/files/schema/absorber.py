@@ -25,6 +25,8 @@ from torsional.files.schema.springs import DampedSpring, Friction, Spring, check
 
 Order = Annotated[float, Quantity("engine_order", above=0)]
 GearQuotient = Annotated[float, Quantity("ratio", above=0)]
+SpringRate = Annotated[float, Quantity("spring_rate", above=0)]
+Time = Annotated[float, Quantity("time", least=0)]
 Whole = Annotated[int, Field(ge=1, le=100)]
 Clearance = Annotated[float | list[float], Quantity("relative_angle", least=0, shape="one or list")]
 Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
@@ -48,6 +50,10 @@ class PendulumFields(Block):
     damping: Damping = 0.0
     path: Path = "circular"
     rollers: RollersBlock | None = None
+    count: Whole = Field(1, description="pendulums that share the mass and, in time, move each on its own")
+    stop: Length | None = Field(None, description="way along the path to its end stops")
+    stop_stiffness: SpringRate = Field(1e7, description="of a stop, along the path")
+    stop_time: Time = Field(1e-5, description="contact time of a stop, its damping over its stiffness")
 
 
 class PendulumBlock(PendulumFields):
@@ -166,7 +172,7 @@ class PlanetaryDualMassFlywheel(AbsorberBlock, DampedSpring):
 class CoilSpringBlock(Block):
     """A coil spring; of an arc spring the lengths are those along its arc."""
 
-    rate: Annotated[float, Quantity("spring_rate", above=0)] = Field(description="of the whole spring")
+    rate: SpringRate = Field(description="of the whole spring")
     free_length: Length
     solid_length: Length = Field(description="with its coils touching")
     mass: Annotated[float, Quantity("mass", least=0)] = 0.0
@@ -181,9 +187,7 @@ class GuideFrictionBlock(Block):
     )
     stribeck_velocity: Annotated[float, Quantity("velocity", above=0)] = Field(0.02, description="between the two")
     presliding: Annotated[float, Quantity("presliding", above=0)] = 2e-5
-    bristle_time: Annotated[float, Quantity("time", least=0)] = Field(
-        1e-5, description="damping of the bristles over their stiffness"
-    )
+    bristle_time: Time = Field(1e-5, description="damping of the bristles over their stiffness")
     viscous_coefficient: Annotated[float, Quantity("number", least=0)] = Field(
         0.01, description="what the coefficient gains per m/s"
     )
@@ -206,7 +210,7 @@ class SpringFlywheelFields(AbsorberBlock):
     stop_stiffness: Stiffness = 2e6
     tab_stiffness: Stiffness = 1e6
     bind_stiffness: Stiffness = Field(5e5, description="of solid coils")
-    contact_time: Annotated[float, Quantity("time", least=0)] = Field(2e-5, description="damping over stiffness of all")
+    contact_time: Time = Field(2e-5, description="damping over stiffness of all")
     friction: GuideFrictionBlock | None = Field(None, description="on the primary's guide")
     grease_damping: Damping = Field(0.0, description="of each body in the channels")
     preloaded: bool = Field(False, description="springs longer than their channel are meant")
