@@ -29,7 +29,7 @@ def changed(model: Model, *edits: Edit) -> Model:
     document = copy.deepcopy(dict(model.document))
     for edit in edits:
         for path, value in [parsed_edit(edit)] if isinstance(edit, str) else edit.items():
-            _put(document, path, value)
+            put(document, path, value)
     return rebuilt(model, document)
 
 
@@ -69,7 +69,7 @@ def document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
             yield from document_values(item, f"{path}.{key}" if path else str(key))
 
 
-def _put(document: dict[str, Any], path: str, value: Any) -> None:
+def put(document: dict[str, Any], path: str, value: Any) -> None:
     """Set or remove one value; blocks on the way that the document leaves out are made."""
     *steps, last = path.split(".")
     if not all([*steps, last]):

@@ -1,0 +1,299 @@
+"""What a scenario file may hold: one block of keys for each kind of event, with units and defaults."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from torsional import units
+from torsional.errors import ModelError
+from torsional.files.schema.fields import Block, Inertia, Node, Quantity, Speed, Stiffness, Torque
+
+VERSION = 1
+RPM = math.pi / 30
+
+Time = Annotated[float, Quantity("time", above=0)]
+Moment = Annotated[float, Quantity("time", least=0)]
+AnyTorque = Annotated[float, Quantity("torque")]
+SpeedOrZero = Annotated[float, Quantity("speed", least=0)]
+Share = Annotated[float, Quantity("ratio", least=0)]
+
+
+def _version(value: object) -> object:
+    if isinstance(value, bool) or value != VERSION:
+        problem, remedy = "this version of scenario files is unknown", f"write 'torsional_scenario: {VERSION}'"
+        raise ModelError(problem, found=units.quoted(value), allowed=str(VERSION), remedy=remedy)
+    return VERSION
+
+
+def _gear(value: object) -> object:
+    """A gear by number is meant by its name."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+Version = Annotated[int, BeforeValidator(_version)]
+GearName = Annotated[str, BeforeValidator(_gear), Field(max_length=64)]
+
+
+class Starter(Block):
+    """A starter motor on the crankshaft, one-way: its torque falls in a straight line with the crank's speed."""
+
+    torque: Torque = Field(1200.0, description="at standstill, at the crankshaft")
+    speed: Speed = Field(250 * RPM, description="of the crank, at which it gives no more")
+    until: Time = Field(1.2, description="when it is switched off")
+
+
+class SpeedGovernor(Block):
+    """What keeps the engine at a speed: heat of combustion as a share of that for the most torque it may ask for."""
+
+    speed: Speed | None = Field(None, description="wanted; default: the model's idle speed")
+    torque: Torque = Field(1000.0, description="mean torque at most")
+    droop: Speed = Field(150 * RPM, description="by which the speed must fall for that torque")
+    reset: Time = Field(1.0, description="time after which a lasting error has doubled its effect")
+
+
+class ClutchLinings(Block):
+    """Linings that slip: their capacity grows from nought to full while the clutch is engaged."""
+
+    capacity: Torque = Field(3500.0, description="torque that it carries sliding, fully pressed")
+    breakaway: Share = Field(1.1, description="torque that it carries sticking over that")
+    engages: Moment = Field(0.2, description="when pressing begins")
+    within: Time = Field(0.5, description="until the linings are fully pressed")
+    lining_inertia: Inertia = Field(0.03, description="of linings and carrier plate, ahead of the damper")
+    stiffness: Stiffness = Field(1e6, description="of the linings while they stick")
+
+
+B = TypeVar("B", bound=Block)
+
+
+def _usual(block: type[B], **values: object) -> Callable[[], B]:
+    """A block with its defaults but for some values."""
+    return lambda: block.model_validate(values)
+
+
+class Scenario(Block):
+    """What every scenario holds."""
+
+    title: ClassVar[str] = ""
+    torsional_scenario: Version
+    scenario: str
+    name: str = Field("", max_length=200)
+    duration: Time = 2.0
+    step: Time | None = Field(None, description="of time; default: chosen from the line's modes")
+    model: dict[str, Any] = Field(default_factory=dict, description="values of the model file to be changed")
+
+    @model_validator(mode="after")
+    def _in_time(self) -> Scenario:
+        for path, moment in self.moments():
+            if moment >= self.duration:
+                found, allowed = units.show(moment, "time"), f"before the end, {units.show(self.duration, 'time')}"
+                raise ModelError("nothing would be seen of it", where=path, found=found, allowed=allowed)
+        if self.step is not None and self.step > self.duration / 100:
+            allowed = f"at most a hundredth of the duration, {units.show(self.duration / 100, 'time')}"
+            raise ModelError(
+                "the step is too large", where="step", found=units.show(self.step, "time"), allowed=allowed
+            )
+        return self
+
+    def moments(self) -> list[tuple[str, float]]:
+        """Key path and time [s] of what must happen within the duration."""
+        return []
+
+    @property
+    def gears(self) -> tuple[str, ...]:
+        """The gears that are named; none is the model's last."""
+        return tuple(filter(None, (getattr(self, key, "") for key in ("gear", "from_gear", "to_gear"))))
+
+
+class EngineStart(Scenario):
+    """Starter, first firings, governor to idle; gearbox in neutral, clutch closed."""
+
+    title: ClassVar[str] = "Engine start"
+    scenario: Literal["engine_start"]
+    duration: Time = 2.0
+    starter: Starter = Field(default_factory=_usual(Starter))
+    firing_from: Moment = Field(0.6, description="when the first cylinder burns")
+    governor: SpeedGovernor = Field(default_factory=_usual(SpeedGovernor))
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The first firing."""
+        return [("firing_from", self.firing_from)]
+
+
+class EngineStop(Scenario):
+    """Fuel cut at idle; compression and friction bring the engine to rest through the resonance of its flywheel."""
+
+    title: ClassVar[str] = "Engine stop"
+    scenario: Literal["engine_stop"]
+    duration: Time = 2.0
+    speed: Speed | None = Field(None, description="before; default: idle")
+    fuel_off: Moment = 0.2
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The end of combustion."""
+        return [("fuel_off", self.fuel_off)]
+
+
+class _Tip(Scenario):
+    """A change of engine torque in gear; the vehicle is free to change its speed."""
+
+    duration: Time = 2.0
+    gear: GearName = Field("", description="default: the last one")
+    speed: Speed = Field(1000 * RPM, description="of the engine before")
+    before: AnyTorque = Field(0.0, description="mean engine torque before")
+    after: AnyTorque = Field(1500.0, description="mean engine torque after")
+    at: Moment = Field(0.3, description="when it changes")
+    within: Time = Field(0.05, description="time that the change takes")
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The beginning of the change."""
+        return [("at", self.at)]
+
+
+class TipIn(_Tip):
+    """The driver steps on the pedal in gear; the vehicle is free to gain speed."""
+
+    title: ClassVar[str] = "Tip-in"
+    scenario: Literal["tip_in"]
+
+    @model_validator(mode="after")
+    def _rises(self) -> TipIn:
+        _ordered(self, self.before < self.after, "more than before", "tip_out")
+        return self
+
+
+class TipOut(_Tip):
+    """The driver leaves the pedal in gear."""
+
+    title: ClassVar[str] = "Tip-out"
+    scenario: Literal["tip_out"]
+    before: AnyTorque = Field(1500.0, description="mean engine torque before")
+    after: AnyTorque = Field(0.0, description="mean engine torque after")
+
+    @model_validator(mode="after")
+    def _falls(self) -> TipOut:
+        _ordered(self, self.before > self.after, "less than before", "tip_in")
+        return self
+
+
+class ClutchEngagement(Scenario):
+    """The clutch closes between a running engine and a vehicle that stands or rolls."""
+
+    title: ClassVar[str] = "Clutch engagement"
+    scenario: Literal["clutch_engagement"]
+    duration: Time = 3.0
+    gear: GearName = Field("", description="default: the first one")
+    speed: Speed = Field(1000 * RPM, description="of the engine before")
+    vehicle_at: SpeedOrZero = Field(0.0, description="speed of the gearbox input at which the vehicle rolls")
+    torque: Torque = Field(800.0, description="mean engine torque at most, asked for by the governor")
+    road_load: Torque | None = Field(None, description="resistance, at the node that takes up the load")
+    clutch: ClutchLinings = Field(default_factory=_usual(ClutchLinings))
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The beginning of the engagement."""
+        return [("clutch.engages", self.clutch.engages)]
+
+
+class GearShift(Scenario):
+    """The clutch closes after a shift: the vehicle rolls on, the engine still has the speed of the old gear."""
+
+    title: ClassVar[str] = "Gear shift"
+    scenario: Literal["gear_shift"]
+    duration: Time = 1.5
+    from_gear: GearName = Field("", description="default: the last but one")
+    to_gear: GearName = Field("", description="default: the last one")
+    speed: Speed = Field(1400 * RPM, description="of the engine, in the old gear")
+    torque: Torque = Field(1000.0, description="mean engine torque after the shift")
+    torque_from: Moment = Field(0.6, description="when the engine begins to pull again")
+    clutch: ClutchLinings = Field(default_factory=_usual(ClutchLinings, within=0.3))
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The beginning of the engagement, and of the torque."""
+        return [("clutch.engages", self.clutch.engages), ("torque_from", self.torque_from)]
+
+
+class Stall(Scenario):
+    """The wheels are braked in gear with the clutch closed until the engine stalls."""
+
+    title: ClassVar[str] = "Stall"
+    scenario: Literal["stall"]
+    duration: Time = 2.0
+    gear: GearName = Field("", description="default: the last one")
+    speed: Speed = Field(800 * RPM, description="of the engine before")
+    torque: Torque = Field(600.0, description="mean engine torque, up to the end of combustion")
+    brake: Torque = Field(40e3, description="at the braked node")
+    node: Node = Field("wheels", description="that is braked")
+    at: Moment = Field(0.2, description="when braking begins")
+    within: Time = Field(0.15, description="until the brake is fully on")
+    fuel_off: Speed = Field(300 * RPM, description="engine speed under which nothing burns any more")
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The beginning of braking."""
+        return [("at", self.at)]
+
+
+class TractionLoss(Scenario):
+    """Driven wheels lose their grip under torque and find it again."""
+
+    title: ClassVar[str] = "Loss of traction"
+    scenario: Literal["traction_loss"]
+    duration: Time = 2.0
+    gear: GearName = Field("", description="default: the middle one")
+    speed: Speed = Field(1000 * RPM, description="of the engine before")
+    torque: Torque = Field(1500.0, description="mean engine torque")
+    tyres: str = Field("tyres", description="connection between wheels and vehicle", max_length=64)
+    grip: Torque = Field(60e3, description="torque that the driven wheels hold on dry road")
+    slippery: Share = Field(0.15, description="share of the grip left on the slippery stretch")
+    lost: Moment = Field(0.3, description="when the slippery stretch begins")
+    found: Time = Field(0.7, description="when it ends")
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The ends of the slippery stretch."""
+        return [("lost", self.lost), ("found", self.found)]
+
+    @model_validator(mode="after")
+    def _later(self) -> TractionLoss:
+        if self.found <= self.lost:
+            found, allowed = units.show(self.found, "time"), f"after {units.show(self.lost, 'time')}"
+            raise ModelError("grip is found before it is lost", where="found", found=found, allowed=allowed)
+        return self
+
+
+class IdlePulse(Scenario):
+    """A torque pulse at idle in neutral: whether springs with lash keep being met afterwards."""
+
+    title: ClassVar[str] = "Torque pulse at idle"
+    scenario: Literal["idle_pulse"]
+    duration: Time = 3.0
+    speed: Speed | None = Field(None, description="default: idle")
+    pulse: AnyTorque = 500.0
+    node: str = Field("", description="on which it acts; default: the crankshaft", max_length=64)
+    at: Moment = 1.0
+    length: Time = Field(0.033, description="of the pulse")
+
+    def moments(self) -> list[tuple[str, float]]:
+        """The pulse."""
+        return [("at", self.at)]
+
+
+def _ordered(tip: _Tip, right: bool, allowed: str, other: str) -> None:
+    if not right:
+        before = units.show(tip.before, "torque")
+        told = {"found": units.show(tip.after, "torque"), "allowed": f"{allowed}, {before}"}
+        raise ModelError("the torque changes the other way", where="after", **told, remedy=f"or choose {other}")
+
+
+KINDS: dict[str, type[Scenario]] = {
+    "engine_start": EngineStart,
+    "engine_stop": EngineStop,
+    "tip_in": TipIn,
+    "tip_out": TipOut,
+    "clutch_engagement": ClutchEngagement,
+    "gear_shift": GearShift,
+    "stall": Stall,
+    "traction_loss": TractionLoss,
+    "idle_pulse": IdlePulse,
+}

@@ -1,0 +1,72 @@
+"""What a scenario comes to: a line, what drives it, how it starts, and what is worth looking at."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from torsional.powertrain import Powertrain
+from torsional.solvers.transient.acting import Drive
+from torsional.solvers.transient.problem import Problem
+from torsional.solvers.transient.starts import State, starting
+from torsional.studies.scenarios.lines import stuck
+from torsional.studies.scenarios.schedule import Knots
+from torsional.system import System, assemble
+
+FOLLOWING = 0.1
+"""Time constant [s] with which absolute dampers follow the crank's own speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A scenario ready to be stepped: plain values for `transient`.
+
+    ``line``; ``drives``; ``speed`` of the frame [rad/s], the engine's before anything happens; ``duration`` [s];
+    ``start`` as `transient` has it; ``turned``: the crank angle [rad] at which it stands; ``lag`` [rad/s] by which the
+    nodes ``lagging`` turn slower than the frame, seen at the engine; ``hold``: the node that takes up the mean load of
+    the time zero; ``stuck``: linings that carry their share of it; ``levels`` of normal loads over time.  ``crank``:
+    the node of the engine's speed; ``springs``, ``watched``: absorber springs, and further connections, to be drawn;
+    ``shown``: what happens, over time, by its name and quantity.
+    """
+
+    title: str
+    line: Powertrain
+    drives: tuple[Drive, ...]
+    speed: float
+    duration: float
+    crank: str
+    springs: tuple[str, ...]
+    start: str = "rest"
+    turned: float = 0.0
+    lag: float = 0.0
+    lagging: frozenset[str] = frozenset()
+    hold: str = ""
+    stuck: tuple[str, ...] = ()
+    levels: Mapping[str, Knots] = field(default_factory=dict)
+    watched: tuple[str, ...] = ()
+    nodes: tuple[str, ...] = ()
+    shown: Mapping[str, tuple[Knots, str]] = field(default_factory=dict)
+    step: float | None = None
+    gear: str = ""
+
+    def started(self, system: System) -> State | str:
+        """The state it starts from: as asked for, but turned, and part of it slower, and linings that hold a torque."""
+        if self.stuck:
+            return self._carrying(system)
+        if not (self.turned or self.lag):
+            return self.start
+        state = State.at_rest(system)
+        slow = np.array([node in self.lagging for node in system.coordinates])
+        angle = np.full(len(system.coordinates), self.turned)
+        return State(0.0, angle, np.where(slow, -self.lag, 0.0), state.memory, state.integral)
+
+    def _carrying(self, system: System) -> State:
+        """The equilibrium in which linings stick: friction remembers the twist that its mean torque takes."""
+        twin = Problem.of(assemble(stuck(self.line, self.stuck)), self.drives, self.speed, hold=self.hold)
+        state = starting(self.start, twin.system, twin.acting, self.hold, twin.start_speed)
+        twist = system.connections.weights @ state.angle
+        sticks = np.array([name in self.stuck for name in system.connections.names])
+        return dataclasses.replace(state, memory=np.where(sticks, twist, 0.0))

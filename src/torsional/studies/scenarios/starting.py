@@ -1,0 +1,99 @@
+"""The engine alone, in neutral: it starts, stops, and idles when a torque disturbs it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from torsional.errors import ModelError, nearest
+from torsional.files.scenario_schema import EngineStart, EngineStop, IdlePulse
+from torsional.model import Model
+from torsional.powertrain import Powertrain
+from torsional.solvers.transient.cylinders import CylinderTorques
+from torsional.studies.scenarios.lines import crank_of, in_neutral
+from torsional.studies.scenarios.plan import Plan
+from torsional.studies.scenarios.schedule import (
+    cylinders,
+    heat_for,
+    pulse,
+    speed_governor,
+    starter_motor,
+    torque_pulse,
+)
+
+ANGLES = 2881
+"""Crank angles of one cycle at which the resting place is looked for."""
+
+
+def engine_start(block: EngineStart, model: Model) -> Plan:
+    """Starter from rest, heat from the first firing on, as much as the governor asks for."""
+    crank, idle = crank_of(model), block.governor.speed or model.operation.idle
+    motor = cylinders(model, idle, block.governor.torque, ((0.0,), (0.0,)))
+    starter = starter_motor(block.starter, crank)
+    governor = speed_governor(block.governor, crank, idle, block.firing_from)
+    marks = {"starter": (pulse(0.0, block.starter.until, 1.0), ""), "firing": (pulse(block.firing_from, 1e9, 1.0), "")}
+    drives = (motor, starter, governor)
+    return Plan(**_alone(block, model, in_neutral(model)), drives=drives, speed=0.0, turned=resting(motor), shown=marks)
+
+
+def engine_stop(block: EngineStop, model: Model) -> Plan:
+    """Heat for idle without load up to the moment, none from there on."""
+    speed = block.speed or model.operation.idle
+    motor = cylinders(model, speed, *_heat(model, speed, block.fuel_off))
+    marks = {"fuel": (pulse(0.0, block.fuel_off, 1.0), "")}
+    line = in_neutral(model)
+    return Plan(**_alone(block, model, line), **_idling(model), drives=(motor,), speed=speed, shown=marks)
+
+
+def idle_pulse(block: IdlePulse, model: Model) -> Plan:
+    """Idle without load, a torque of some milliseconds on a node."""
+    speed, line, node = block.speed or model.operation.idle, in_neutral(model), block.node or crank_of(model)
+    if node not in line.nodes:
+        told = {"found": f"'{node}'", "remedy": nearest(node, line.nodes)}
+        raise ModelError("there is no such node in neutral", where="node", **told)
+    motor = cylinders(model, speed, *_heat(model, speed, np.inf))
+    pushed = torque_pulse(node, block.at, block.length, block.pulse)
+    marks = {"pulse": (pulse(block.at, block.length, block.pulse), "torque")}
+    return Plan(**_alone(block, model, line), **_idling(model), drives=(motor, pushed), speed=speed, shown=marks)
+
+
+def resting(motor: CylinderTorques) -> float:
+    """The crank angle [rad] at which compression leaves the engine standing: no torque, pushed back from either side.
+
+    Friction is taken as none; of several such angles the first one after firing of cylinder 1.
+    """
+    angle = np.linspace(0.0, 4 * np.pi, ANGLES)
+    torque = np.sum([profile.at(angle) - profile.mean for profile in motor.profiles()[0]], axis=0)
+    falls = np.flatnonzero((torque[:-1] > 0) & (torque[1:] <= 0))
+    if not falls.size:
+        return 0.0
+    i = falls[0]
+    return float(angle[i] + (angle[i + 1] - angle[i]) * torque[i] / (torque[i] - torque[i + 1]))
+
+
+def _heat(model: Model, speed: float, until: float) -> tuple[float, tuple[tuple[float, ...], tuple[float, ...]]]:
+    """Torque and heat of an engine without load, up to a moment [s]."""
+    most, (share,) = heat_for(model, speed, [0.0])
+    knots = ((0.0,), (share,)) if np.isinf(until) else ((0.0, until, until), (share, share, 0.0))
+    return most, knots
+
+
+def _idling(model: Model) -> dict[str, Any]:
+    """In steady vibration; what the engine's mean torque is off nought is taken up at the crankshaft."""
+    return {"start": "vibrating", "hold": crank_of(model)}
+
+
+def _alone(block: EngineStart | EngineStop | IdlePulse, model: Model, line: Powertrain) -> dict[str, Any]:
+    marks = model.landmarks
+    return {
+        "title": f"{block.title}: {block.name or model.name}",
+        "line": line,
+        "duration": block.duration,
+        "step": block.step,
+        "crank": crank_of(model),
+        "springs": tuple(name for name in marks.springs if name in line.components),
+        "watched": tuple(name for name in (marks.clutch,) if name in line.components),
+        "nodes": tuple(node for node in (marks.input,) if node in line.nodes),
+        "gear": "neutral",
+    }
