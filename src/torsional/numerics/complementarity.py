@@ -147,12 +147,15 @@ def solve_contacts(
 
 
 def violation(matrix: ArrayLike, offset: ArrayLike, force: ArrayLike, scale: ArrayLike | None = None) -> float:
-    """Certificate of a solution: max |min(λ_i/d_i, d_i w_i)| over max |d p|, zero for an exact one; d as `scale`.
+    """Certificate of a solution: max |min(λ_i/d_i, d_i w_i)|, zero for an exact one; d as `scale`.
 
-    >>> violation([[2.0]], [-1.0], [0.5]), violation([[2.0]], [-1.0], [0.0]), violation([[2.0]], [-1.0], [-0.5])
+    It is told relative to the largest of the forces λ_i/d_i and overlaps −d_i p_i, whatever the open gaps are.
+
+    >>> violation([[4.0]], [-2.0], [0.5]), violation([[4.0]], [-2.0], [0.0]), violation([[4.0]], [-2.0], [-0.5])
     (0.0, 1.0, 2.0)
     """
     M, p, found = (np.asarray(a, dtype=float) for a in (matrix, offset, force))
     d = 1.0 / np.sqrt(np.diag(M)) if scale is None else np.asarray(scale, dtype=float)
     worst = np.abs(np.minimum(found / d, d * (p + M @ found))).max(initial=0.0)
-    return float(worst / (np.abs(d * p).max(initial=0.0) or 1.0))
+    size = max(np.abs(found / d).max(initial=0.0), (-d * p).max(initial=0.0))
+    return float(worst / size) if size > 0.0 else float(worst)
