@@ -51,8 +51,8 @@ class GuideFriction:
     ``sliding_coefficient`` µ_c, ``static_coefficient`` µ_s (default µ_c), between them the Stribeck curve of width
     ``stribeck_velocity`` [m/s]; ``presliding`` [m]: elastic way before it slides; ``bristle_time`` [s]: damping of the
     bristles over their stiffness; ``viscous_coefficient`` [s/m]: what µ gains per m/s.  With µ_s > µ_c the law cannot
-    give off energy as long as viscous_coefficient ≥ bristle_time (µ_s − µ_c)/presliding (Barahanov and Ortega, Proc.
-    CDC 2000).
+    give off energy as long as viscous_coefficient ≥ bristle_time (µ_s − µ_c)/presliding (Barahanov and Ortega,
+    IEEE Trans. Autom. Control 45 (2000) 830).
 
     >>> GuideFriction(0.08, presliding=2e-5).law(0.15).sliding_torque
     0.012
