@@ -11,9 +11,10 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "absorbers": "CentrifugalPendulum Rollers cancellation_frequency dual_mass_flywheel planetary_dual_mass_flywheel "
-    "power_split_absorber single_mass_flywheel tuned_flange_flywheel tuned_secondary_flywheel with_friction "
-    "with_pendulum",
+    "absorbers": "ArcSprings CentrifugalPendulum CoilSpring GuideFriction Rollers StraightSprings arc_spring_flywheel "
+    "cancellation_frequency characteristic condensed dual_mass_flywheel planetary_dual_mass_flywheel "
+    "power_split_absorber single_mass_flywheel straight_spring_flywheel tuned_flange_flywheel tuned_secondary_flywheel "
+    "with_friction with_pendulum",
     "components": "Coupling Damper DistributedShaft GearPair Inertia PlanetSpin PlanetaryGear Shaft Superposition "
     "Tyre Vehicle",
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
