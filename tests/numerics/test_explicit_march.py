@@ -169,6 +169,42 @@ def test_bristles_under_a_changing_normal_load_against_scipy() -> None:
     assert found.states[-1, -1] == pytest.approx(exact.y[4, -1], rel=1e-6)
 
 
+def test_a_spring_that_sticks_and_slides() -> None:
+    """J 1 on a spring of 100 from −1 beside a slider of 5 and 1000: while it slides, J φ″ = −k φ ± F; at the end of the
+    first swing the spring has lost what the slider took."""
+    washer = Jenkins(5.0, 1000.0)
+    system = equations([1.0], [Connection([1.0], 100.0), Connection([1.0], law=washer)])
+    times = np.linspace(0.0, 0.25, 26)
+    found = explicit_march(system, times, [-1.0], [0.0], tolerance=1e-9, sliders=washer.address)
+    stuck = np.sqrt(1100.0)  # from rest, about −1 + 100/1100, to the deflection 0.005
+    slips = np.arccos(1.0 - 0.005 * 1100.0 / 100.0) / stuck
+    speed = 100.0 / stuck * np.sin(stuck * slips)
+    later = times[times > slips]
+    turned = 10.0 * (later - slips)
+    exact = 0.05 * -1.0 + (-0.995 + 0.05) * np.cos(turned) + 0.1 * speed * np.sin(turned)
+    np.testing.assert_allclose(found.angles[times > slips, 0], exact, atol=1e-6)
+    np.testing.assert_allclose(found.memories[times > slips, 1], 0.005, rtol=1e-6)
+    np.testing.assert_allclose(found.accelerations[0], [100.0])
+
+
+def test_a_march_goes_on_from_where_another_ended() -> None:
+    """Memory, the governor's integral and the reference rotation are part of the state."""
+    governor = Governor([1.0, 0.0], [1.0, 0.0], 0, proportional=6.0, integral=4.0)
+    parts = [
+        Connection([1.0, -1.0], 300.0),
+        Connection([1.0, -1.0], law=BRISTLES),
+        Connection([0.0, 1.0], 0.0, 2.0, follow=1.0),
+    ]
+    system = equations([2.0, 1.0], parts, governors=[governor], levels=[(0.0, 60.0)], frame=([0.0], [50.0]),
+                       reference_time=0.3)  # fmt: skip
+    options = {"tolerance": 1e-10, "bristles": BRISTLES.address}
+    whole = explicit_march(system, [0.0, 0.2, 0.4], [0.0, 0.0], [0.0, 3.0], **options)
+    second = explicit_march(system, [0.2, 0.4], whole.angles[1], whole.rates[1], **options, integral=whole.integrals[1],
+                            reference_speed=whole.references[1], memory=whole.memories[1])  # fmt: skip
+    np.testing.assert_allclose(second.states[-1], whole.states[-1], rtol=1e-7)
+    assert np.abs(whole.memories[1, 1]) > 1e-7 and whole.integrals[1, 0] > 1.0 and whole.references[1] > 50.1
+
+
 # --- other integrators -----------------------------------------------------------------------------------------------
 
 

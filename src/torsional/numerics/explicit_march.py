@@ -38,11 +38,16 @@ SMALLEST = 16.0 * np.finfo(float).eps  # steps, as a share of the time
 
 
 class March(NamedTuple):
-    """Samples at ``times`` (T,) [s]: ``angles`` [rad], ``rates`` [rad/s] (T, N), all states (T, size); steps taken."""
+    """Samples at ``times`` (T,) [s]: ``angles`` [rad], ``rates`` [rad/s], ``accelerations`` (T, N); ``references``
+    Ω_r (T,), ``integrals`` (T, G) of governors, ``memories`` (T, E); all ``states`` (T, size); steps taken, refused."""
 
     times: Array
     angles: Array
     rates: Array
+    accelerations: Array
+    references: Array
+    integrals: Array
+    memories: Array
     states: Array
     steps: int
     refused: int
@@ -117,6 +122,17 @@ def _march(
     return True
 
 
+def _told(equations: Equations, at: Places, grid: Array, states: Array, control: Array) -> March:
+    n, rate = equations.coordinates, np.zeros(at.size)
+    accelerations, memories = np.empty((grid.size, n)), np.zeros((grid.size, at.memory.size))
+    memories[:, at.memory >= 0] = states[:, at.memories :]
+    for i in range(grid.size):
+        fill_rates(equations, at, grid[i], states[i], rate)
+        accelerations[i] = rate[n : 2 * n]
+    parts = states[:, :n], states[:, n : 2 * n], accelerations, states[:, 2 * n], states[:, at.governor : at.memories]
+    return March(grid, *parts, memories, states, int(control[3]), int(control[4]))
+
+
 def explicit_march(
     equations: Equations,
     times: ArrayLike,
@@ -125,23 +141,28 @@ def explicit_march(
     *,
     tolerance: float = 1e-10,
     bristles: int = 0,
+    sliders: int = 0,
     reference_speed: float | None = None,
+    integral: ArrayLike = 0.0,
+    memory: ArrayLike = 0.0,
     most_steps: int = 10_000_000,
 ) -> March:
     """Integrate from ``angles`` [rad] and ``rates`` [rad/s] (N,) at the first of the rising ``times`` [s].
 
-    ``tolerance``: of a step's error, relative to the largest angle and the largest rate at the time.  ``bristles``: the
-    address of the kernel of LuGre friction, whose z is integrated from zero; laws with another memory are refused.
-    Governors act without sampling.  ``reference_speed``: Ω_r to begin with [rad/s], default the frame's.  Every time
-    is the end of a step, as are the knots of levels.  Raises ModelError for what cannot be integrated, and where
-    ``most_steps`` do not do.
+    ``tolerance``: of a step's error, relative to the largest angle and the largest rate at the time.  ``bristles`` and
+    ``sliders``: addresses of the kernels of LuGre friction and of Jenkins' spring and slider, whose memories are
+    integrated; laws with another memory are refused.  Governors act without sampling.  To begin with:
+    ``reference_speed`` Ω_r [rad/s], default the frame's; ``integral`` (G,) [Nm] of governors; ``memory`` (E,) [rad].
+    Every time is the end of a step, as are the knots of levels.  Raises ModelError for what cannot be integrated, and
+    where ``most_steps`` do not do.
     """
     grid = np.asarray(times, dtype=float)
     if grid.ndim != 1 or grid.size < 2 or not (np.diff(grid) > 0.0).all():
         raise ModelError("times must rise", where="times", found=str(grid[:5]))
-    at, n = places(equations, bristles), equations.coordinates
+    at, n = places(equations, bristles, sliders), equations.coordinates
     states = np.zeros((grid.size, at.size))
-    states[0, :n], states[0, n : 2 * n] = angles, rates
+    states[0, :n], states[0, n : 2 * n], states[0, at.governor : at.memories] = angles, rates, integral
+    states[0, at.memories :] = np.broadcast_to(np.asarray(memory, dtype=float), at.memory.shape)[at.memory >= 0]
     frame = frame_at(equations.frame_time, equations.frame_value, grid[0])[0]
     states[0, 2 * n] = frame if reference_speed is None else reference_speed
     knots = np.concatenate([equations.driven.level_time, equations.frame_time])
@@ -154,4 +175,4 @@ def explicit_march(
         raise ModelError(
             "the explicit integrator did not arrive", found=found, remedy="a shorter span or implicit steps"
         )
-    return March(grid, states[:, :n], states[:, n : 2 * n], states, int(control[3]), int(control[4]))
+    return _told(equations, at, grid, states, control)

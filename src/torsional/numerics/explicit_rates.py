@@ -31,26 +31,27 @@ from torsional.numerics.stepping_data import Connected, Equations, Rows
 class Places(NamedTuple):
     """What a right-hand side needs beside the equations: M (N, N) without pistons and its inverse; where memories are.
 
-    ``memory`` (E,): a connection's place among the memories, or −1; ``governor``, ``memories``: where I_g and z begin
-    in y, of ``size`` entries.
+    ``memory`` (E,): a connection's place among the memories, or −1; ``slides`` (E,): 1 for a spring and slider;
+    ``governor``, ``memories``: where I_g and z begin in y, of ``size`` entries.
     """
 
     mass: Array
     inverse: Array
     memory: IntArray
+    slides: IntArray
     governor: int
     memories: int
     size: int
 
 
-def places(equations: Equations, bristles: int = 0) -> Places:
-    """Work out masses and places once; ``bristles``: the address of the LuGre kernel, the one memory that is known.
+def places(equations: Equations, bristles: int = 0, sliders: int = 0) -> Places:
+    """Work out masses and places once; the addresses are of the kernels of LuGre friction and of spring and slider.
 
     Raises ModelError for coordinates without mass and for laws with another memory, which has no rate.
     """
     connected, n = equations.connected, equations.coordinates
     remembers = np.flatnonzero((connected.remembers != 0) & (connected.address != 0))
-    if (connected.address[remembers] != bristles).any():
+    if not np.isin(connected.address[remembers], [bristles, sliders]).all():
         remedy = "take the implicit steps, or LuGre friction"
         raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
     mass = np.zeros((n, n))
@@ -59,11 +60,11 @@ def places(equations: Equations, bristles: int = 0) -> Places:
         raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
     memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
     memory[remembers] = np.arange(remembers.size)
+    slides = ((connected.address == sliders) & (memory >= 0)).astype(np.int64)
     governor = 2 * n + 1
     memories = governor + equations.governed.proportional.size
-    return Places(
-        mass, np.asarray(np.linalg.inv(mass), dtype=float), memory, governor, memories, memories + remembers.size
-    )
+    inverse = np.asarray(np.linalg.inv(mass), dtype=float)
+    return Places(mass, inverse, memory, slides, governor, memories, memories + remembers.size)
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -108,8 +109,11 @@ def normal_load(equations: Equations, e: int, t: float, omega: float, elastic: A
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _bristle_rate(values: Array, rate: float, bent: float) -> float:
-    """ż = u − σ0 |u| z/g(u), from parameters σ0, σ1, σ2, g_c, g_s, u_s, … of LuGre friction."""
+def _memory_rate(values: Array, slides: bool, rate: float, bent: float) -> float:
+    """ż = u − σ0 |u| z/g(u) of bristles, from parameters σ0, σ1, σ2, g_c, g_s, u_s, …; u of a spring that sticks and
+    zero of one that slides, from F, k."""
+    if slides:
+        return 0.0 if values[1] * abs(bent) >= values[0] and bent * rate > 0.0 else rate
     curve = values[3] + (values[4] - values[3]) * math.exp(-((rate / values[5]) ** 2))
     return rate - values[0] * abs(rate) / curve * bent
 
@@ -137,7 +141,7 @@ def _connection_torques(
             bent = 0.0
             if at.memory[e] >= 0:
                 bent = y[at.memories + at.memory[e]]
-                out[at.memories + at.memory[e]] = _bristle_rate(values, rate[e], bent)
+                out[at.memories + at.memory[e]] = _memory_rate(values, at.slides[e] == 1, rate[e], bent)
             law = law_at(c.address[e])
             total += law(values, angle[e], rate[e], bent, 0.0)[0]
         add_row(c.rows, e, -total, torque)
