@@ -67,10 +67,12 @@ def test_the_reference_rotation_follows_the_first_coordinate() -> None:
     """J v' = −c (v − δ), δ' = (v − δ)/T with δ = Ω_r − Ω_f: v − δ fades with c/J + 1/T."""
     drag = Connection([1.0], damping=3.0, follow=1.0)
     system = equations([2.0], [drag], reference_time=0.5, frame=([0.0], [100.0]))
-    found = explicit_march(system, [0.0, 0.4], [0.0], [5.0], tolerance=1e-12)
+    found = explicit_march(system, [0.0, 0.4], [0.0], [5.0], tolerance=1e-12, reference_speed=100.0)
     rate = 3.0 / 2.0 + 2.0
     exact = 5.0 - 1.5 * 5.0 / rate * (1.0 - np.exp(-rate * 0.4))
     assert found.rates[-1, 0] == pytest.approx(exact, rel=1e-10)
+    along = explicit_march(system, [0.0, 0.4], [0.0], [5.0])
+    assert along.rates[-1, 0] == 5.0 and along.references.tolist() == [105.0, 105.0]
     held = explicit_march(equations([2.0], [drag], frame=([0.0], [100.0])), [0.0, 0.4], [0.0], [5.0])
     assert held.rates[-1, 0] == pytest.approx(5.0 * np.exp(-0.6), rel=1e-9)
 

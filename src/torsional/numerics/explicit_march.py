@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.explicit_rates import Places, fill_rates, places
-from torsional.numerics.sources import frame_at
+from torsional.numerics.sources import frame_at, row_product
 from torsional.numerics.stepping_data import Equations
 
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -152,9 +152,9 @@ def explicit_march(
     ``tolerance``: of a step's error, relative to the largest angle and the largest rate at the time.  ``bristles`` and
     ``sliders``: addresses of the kernels of LuGre friction and of Jenkins' spring and slider, whose memories are
     integrated; laws with another memory are refused.  Governors act without sampling.  To begin with:
-    ``reference_speed`` Ω_r [rad/s], default the frame's; ``integral`` (G,) [Nm] of governors; ``memory`` (E,) [rad].
-    Every time is the end of a step, as are the knots of levels.  Raises ModelError for what cannot be integrated, and
-    where ``most_steps`` do not do.
+    ``reference_speed`` Ω_r [rad/s], default the speed at the reference; ``integral`` (G,) [Nm] of governors; ``memory``
+    (E,) [rad].  Every time is the end of a step, as are the knots of levels.  Raises ModelError for what cannot be
+    integrated, and where ``most_steps`` do not do.
     """
     grid = np.asarray(times, dtype=float)
     if grid.ndim != 1 or grid.size < 2 or not (np.diff(grid) > 0.0).all():
@@ -164,7 +164,8 @@ def explicit_march(
     states[0, :n], states[0, n : 2 * n], states[0, at.governor : at.memories] = angles, rates, integral
     states[0, at.memories :] = np.broadcast_to(np.asarray(memory, dtype=float), at.memory.shape)[at.memory >= 0]
     frame = frame_at(equations.frame_time, equations.frame_value, grid[0])[0]
-    states[0, 2 * n] = frame if reference_speed is None else reference_speed
+    turning = frame + row_product(equations.reference, 0, states[0, n : 2 * n])
+    states[0, 2 * n] = turning if reference_speed is None else reference_speed
     knots = np.concatenate([equations.driven.level_time, equations.frame_time])
     stops = np.unique(np.concatenate([grid, knots[(knots > grid[0]) & (knots < grid[-1])]]))
     kept = np.isin(stops, grid).astype(np.int64)
