@@ -281,7 +281,7 @@ def test_parts_that_cannot_be_built_are_refused() -> None:
         CoilSpring(1e5, 0.03, 0.03)
     with pytest.raises(ModelError, match="must not be below sliding"):
         GuideFriction(0.1, 0.05)
-    with pytest.raises(ModelError, match=r"give off energy.*>= 0\.025 s/m"):
+    with pytest.raises(ModelError, match=r"give off energy.*>= 0\.02 s/m"):
         GuideFriction(0.1, 0.15)
 
 

@@ -43,7 +43,7 @@ STRAIGHT_DESIGN = StraightSprings(
     secondary_clearance=(0.3 * DEGREE, 0.3 * DEGREE),
     stop_angle=15.98 * DEGREE,
     grease_damping=0.3,
-    friction=GuideFriction(0.08, 0.10, presliding=20 * MICRON, viscous_coefficient=0.02),
+    friction=GuideFriction(0.08, 0.10, presliding=50 * MICRON, bristle_time=0.05e-3, viscous_coefficient=0.02),
     rated_torque=3450.0,
     damping=20.0,
 )
@@ -58,8 +58,8 @@ ARC_DESIGN = ArcSprings(
     secondary_clearance=(0.5 * DEGREE, 0.5 * DEGREE),
     stop_angle=13.75 * DEGREE,
     grease_damping=0.1,
-    friction=GuideFriction(0.09, 0.11, presliding=20 * MICRON, viscous_coefficient=0.02),
-    inner_friction=GuideFriction(0.12, presliding=20 * MICRON),
+    friction=GuideFriction(0.09, 0.11, presliding=50 * MICRON, bristle_time=0.05e-3, viscous_coefficient=0.02),
+    inner_friction=GuideFriction(0.12, presliding=50 * MICRON),
     rated_torque=3450.0,
     damping=20.0,
 )

@@ -54,15 +54,15 @@ class GuideFriction:
     give off energy as long as viscous_coefficient ≥ bristle_time (µ_s − µ_c)/presliding (Barahanov and Ortega,
     IEEE Trans. Autom. Control 45 (2000) 830).
 
-    >>> GuideFriction(0.08, presliding=2e-5).law(0.15).sliding_torque
+    >>> GuideFriction(0.08).law(0.15).sliding_torque
     0.012
     """
 
     sliding_coefficient: float
     static_coefficient: float | None = None
     stribeck_velocity: float = 0.02
-    presliding: float = 2e-5
-    bristle_time: float = 1e-5
+    presliding: float = 5e-5
+    bristle_time: float = 2e-5
     viscous_coefficient: float = 0.01
 
     def __post_init__(self) -> None:

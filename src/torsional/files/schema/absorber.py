@@ -186,8 +186,8 @@ class GuideFrictionBlock(Block):
         None, description="when it breaks loose; as sliding where none is given"
     )
     stribeck_velocity: Annotated[float, Quantity("velocity", above=0)] = Field(0.02, description="between the two")
-    presliding: Annotated[float, Quantity("presliding", above=0)] = 2e-5
-    bristle_time: Time = Field(1e-5, description="damping of the bristles over their stiffness")
+    presliding: Annotated[float, Quantity("presliding", above=0)] = 5e-5
+    bristle_time: Time = Field(2e-5, description="damping of the bristles over their stiffness")
     viscous_coefficient: Annotated[float, Quantity("number", least=0)] = Field(
         0.01, description="what the coefficient gains per m/s"
     )
