@@ -17,7 +17,9 @@ from torsional.errors import ModelError
 from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Karnopp, LuGre, Stribeck, hysteresis_loop
 from torsional.numerics.callbacks import law_at
 
-BAND = Karnopp(1.0, 1.5, stick_rate=1e-3, stiffness=1e5, normal_load=2.0, grease_damping=0.3)
+BAND = Karnopp(1.0, 1.5, stick_rate=1e-3, bristle_stiffness=1e5, normal_load=2.0, grease_damping=0.3)
+
+DAMPED = Karnopp(1.0, 1.5, stick_rate=1e-3, bristle_stiffness=1e5, bristle_damping=300.0, grease_damping=0.3)
 
 
 # --- curves ---
@@ -59,6 +61,7 @@ def test_karnopp_sticks_breaks_away_and_slides() -> None:
 
 BOUND = {
     "karnopp": (BAND, 0.5 * 1e5),
+    "damped": (DAMPED, 0.5 * 1e5),
     "jenkins": (Jenkins(2.0, 1e5), 0.5 * 1e5),
     "lugre": (LuGre(1e5, 1e5**0.5, 1.0, 1.5, 1e-3, viscous_damping=0.4), 0.5 * 1e5),
     "stribeck": (Stribeck(1.0, 1.5, 0.1, 1e-3, grease_damping=0.3), 0.0),
@@ -86,7 +89,7 @@ def test_karnopp_takes_energy_in_every_step_whatever_its_load_does(moves: list[A
     kernel: Any = Karnopp.kernel
     memory = 0.0
     for rate, load in moves:
-        told = kernel.py_func(BAND.loaded(load).parameters, 0.0, rate, memory, step)
+        told = kernel.py_func(DAMPED.loaded(load).parameters, 0.0, rate, memory, step)
         gained = 0.5e5 * (told[4] ** 2 - memory**2)
         scale = abs(told[0] * rate * step) + 0.5e5 * (told[4] ** 2 + memory**2)
         assert told[0] * rate * step - gained >= -1e-14 * scale
@@ -202,6 +205,42 @@ def test_den_hartog_with_bristles(beta: float, ratio: float) -> None:
         assert stiff + (stiff - soft) / (10**0.5 - 1) == pytest.approx(EXACT[beta, ratio], rel=2e-4)
 
 
+# --- stick-slip ---
+
+
+@numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def slips(address: int, parameters: Any, step: float, count: int) -> Any:
+    """When a unit mass on friction, pulled at 0.1 by a spring of 2, breaks away: explicit steps."""
+    torque = law_at(address)
+    x, v, memory = 0.0, 0.0, 0.0
+    found = [0.0]
+    for i in range(count):
+        told = torque(parameters, 0.0, v, memory, step)
+        memory, before = told[4], v
+        v += step * (2.0 * (0.1 * i * step - x) - told[0])
+        x += step * v
+        if before <= 0.05 < v:
+            found.append(i * step)
+    return np.array(found)
+
+
+def test_karnopps_stick_slip_tends_to_the_exact_one() -> None:
+    """Sticks until 1.5, slides at 1: 2 Δ/(k v) of rest and 2/ω (π − atan(ω Δ/(k v))) of sliding, Δ = 0.5.
+
+    Leaving the band takes a time that falls with √D.
+    """
+    omega = 2**0.5
+    exact = 5.0 + 2 / omega * (np.pi - np.arctan(omega * 0.5 / 0.2))
+    assert exact == pytest.approx(7.611259, abs=1e-6)
+    periods = []
+    for band in (1e-3, 1e-4):
+        law = Karnopp(1.0, 1.5, band, 1e5, 1e5**0.5)
+        periods.append(float(np.diff(slips(law.address, law.parameters, 2e-5, 1_500_000))[-1]))
+    wide, narrow = (period / exact - 1 for period in periods)
+    assert 0 < narrow < 0.01 and wide / narrow == pytest.approx(10**0.5, rel=0.03)
+    assert periods[1] - (periods[0] - periods[1]) / (10**0.5 - 1) == pytest.approx(exact, rel=5e-4)
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
@@ -211,7 +250,7 @@ def test_den_hartog_with_bristles(beta: float, ratio: float) -> None:
         (lambda: Stribeck(1.0, 1.5, 1.0, 0.1, grease_damping=-1.0), "grease_damping: must not be negative"),
         (lambda: Karnopp(1.0, float("inf"), 0.1, 1.0), "breakaway_torque"),
         (lambda: Karnopp(1.0, 1.5, 0.0, 1.0), "stick_rate: must be positive"),
-        (lambda: Karnopp(1.0, 1.5, 0.1, float("nan")), "stiffness: must be positive"),
+        (lambda: Karnopp(1.0, 1.5, 0.1, float("nan")), "bristle_stiffness: must be positive"),
         (lambda: Karnopp(1.0, 1.5, 0.1, 1.0, normal_load=-1.0), "normal_load: must not be negative"),
     ],
 )

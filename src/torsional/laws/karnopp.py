@@ -17,7 +17,7 @@ from torsional.laws.base import Law, Told
 from torsional.laws.checks import breakaway_above_sliding, not_negative, positive
 from torsional.numerics.arrays import Array
 
-LOAD = 4
+LOAD = 5
 """Place of the normal load N among the parameters of `Karnopp`."""
 
 
@@ -38,34 +38,42 @@ def most_held(rate: float, sliding: float, breakaway: float, band: float) -> tup
 
 @numba.njit(cache=True, error_model="numpy")
 def karnopp_torque(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
-    """f = k ζ⁺ + c_v u, ζ⁺ = ζ + h u kept within ±N g(u)/k; parameters are g_c, g_s, D, k, N, c_v."""
+    """f = T + c_v u, T = k ζ⁺ + d (ζ⁺ − ζ)/h with ζ⁺ = ζ + h u, or what keeps T within ±N g(u).
+
+    Parameters are g_c, g_s, D, k, d, N, c_v.
+    """
     limit, slope = most_held(rate, parameters[0], parameters[1], parameters[2])
-    stiffness, load, grease = parameters[3], parameters[4], parameters[5]
-    deflection = memory + rate * step
-    if abs(deflection) * stiffness > load * limit:
-        side = math.copysign(load, deflection)
-        most, falling = side * limit, side * slope
-        still = stiffness if step == 0.0 else 0.0
-        return most + grease * rate, still, falling + grease, 0.0, most / stiffness, 0.0, falling / stiffness, 0.0
+    stiffness, damping, load, grease = parameters[3], parameters[4], parameters[LOAD], parameters[6]
+    torque = stiffness * (memory + rate * step) + damping * rate
     along = 1.0 if step == 0.0 else 0.0
-    torque = stiffness * deflection + grease * rate
-    return torque, stiffness * along, stiffness * step + grease, stiffness, deflection, along, step, 1.0
+    if abs(torque) <= load * limit:
+        drag = stiffness * step + damping + grease
+        return torque + grease * rate, stiffness * along, drag, stiffness, memory + rate * step, along, step, 1.0
+    side = math.copysign(load, torque)
+    most, falling = side * limit, side * slope
+    whole = stiffness * step + damping
+    left, bent = (damping / whole, step / whole) if step > 0.0 else (1.0, 0.0)
+    deflection = left * memory + bent * most
+    return most + grease * rate, stiffness * along, falling + grease, 0.0, deflection, along, bent * falling, left
 
 
 @dataclass(frozen=True)
 class Karnopp(Law):
-    """Friction with a band of sticking: a stiff bristle k that holds up to g(u), and slides at g(u).
+    """Friction with a band of sticking: a stiff bristle that holds up to g(u), and slides at g(u).
 
     Inside the ``stick_rate`` D [rad/s] it holds the ``breakaway_torque`` g_s [Nm], from twice D on no more than the
-    ``sliding_torque`` g_c [Nm], between them g falls on a straight line, since a jump there has no place in an implicit
-    step.  ``stiffness`` k [Nm/rad] of what sticks; the memory is its deflection ζ, |ζ| ≤ N g/k.  Both torques are per
-    unit of ``normal_load`` N, ``grease_damping`` c_v [Nms/rad] and k are not.  Over a step, f h u ≥ Δ(k ζ²/2) for every
-    u and h, whatever g and N do: it cannot create energy.  Karnopp's own law (J. Dyn. Syst. Meas. Control 107 (1985)
-    100) holds what the other torques ask for at rest; the bristle makes that a law of its own ends, so stiff that
-    N g_s/k is a twist of no interest.  Raises ModelError for values that are negative, or zero where the law divides by
-    them, and for g_s < g_c.
+    ``sliding_torque`` g_c [Nm]; between them g falls on a straight line, since a jump there has no place in an implicit
+    step.  What sticks is ``bristle_stiffness`` k [Nm/rad] and ``bristle_damping`` d [Nms/rad]; the memory is their
+    deflection ζ.  Both torques are per unit of ``normal_load`` N; k, d and ``grease_damping`` c_v [Nms/rad] are not.
+    Over a step f h u ≥ Δ(k ζ²/2) for every u and h, whatever g and N do: it cannot create energy.
 
-    >>> law = Karnopp(1.0, 1.5, stick_rate=0.01, stiffness=1e3)
+    Karnopp's own law (J. Dyn. Syst. Meas. Control 107 (1985) 100) holds whatever the other torques ask for while
+    |u| < D.  The bristle makes that a law of its two ends.  Choose k so stiff that the twist N g_s/k is of no interest,
+    d near √(k J) of the inertia that it stops, lest it rings out of the band, and D above the rate Ṫ/k at which rising
+    torques bend it.  Raises ModelError for values that are negative, or zero where the law divides by them, and for
+    g_s < g_c.
+
+    >>> law = Karnopp(1.0, 1.5, stick_rate=0.01, bristle_stiffness=1e3)
     >>> [float(v) for v in law.march([0.0, 0.001, 0.002, 0.02], step=[1.0, 1.0, 1.0, 0.1])[0].round(9)]
     [0.0, 1.0, 1.5, 1.0]
     """
@@ -73,7 +81,8 @@ class Karnopp(Law):
     sliding_torque: float
     breakaway_torque: float
     stick_rate: float
-    stiffness: float
+    bristle_stiffness: float
+    bristle_damping: float = 0.0
     normal_load: float = 1.0
     grease_damping: float = 0.0
 
@@ -87,15 +96,17 @@ class Karnopp(Law):
         not_negative(self.sliding_torque, "sliding_torque", "Nm")
         breakaway_above_sliding(self.sliding_torque, self.breakaway_torque)
         positive(self.stick_rate, "stick_rate", "rad/s")
-        positive(self.stiffness, "stiffness", "Nm/rad")
+        positive(self.bristle_stiffness, "bristle_stiffness", "Nm/rad")
+        not_negative(self.bristle_damping, "bristle_damping", "Nms/rad")
         not_negative(self.normal_load, "normal_load", "")
         not_negative(self.grease_damping, "grease_damping", "Nms/rad")
 
     @property
     def parameters(self) -> Array:
-        """g_c, g_s, D, k, N, c_v."""
-        held = (self.sliding_torque, self.breakaway_torque, self.stick_rate, self.stiffness)
-        return np.array([*held, self.normal_load, self.grease_damping], dtype=float)
+        """g_c, g_s, D, k, d, N, c_v."""
+        held = (self.sliding_torque, self.breakaway_torque, self.stick_rate)
+        bristle = (self.bristle_stiffness, self.bristle_damping)
+        return np.array([*held, *bristle, self.normal_load, self.grease_damping], dtype=float)
 
     def steady(self, rate: ArrayLike) -> Array:
         """Torque [Nm] at a constant rate u [rad/s] that has lasted: N g(u) sgn u + c_v u."""
@@ -111,4 +122,4 @@ class Karnopp(Law):
     def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
         """Whether a swing between two angles [rad] makes it slip: half of it is more than N g_s/k."""
         half = 0.5 * (np.asarray(high, dtype=float) - np.asarray(low, dtype=float))
-        return np.asarray(half * self.stiffness > self.normal_load * self.breakaway_torque)
+        return np.asarray(half * self.bristle_stiffness > self.normal_load * self.breakaway_torque)
