@@ -25,8 +25,10 @@ from torsional.numerics.stepping_data import Connected
 ITERATIONS = 60
 CUTS = 25
 """Places that are tried along one Newton step."""
-LEAST = 2.0**-16
+LEAST = 2.0**-20
 """Share of a step below which no shorter one is tried."""
+QUICK = 1e-5
+"""Time [s] below which no step is shortened for the sake of a jump."""
 NEAR = 1e-10
 """What may be left of the balance, over the largest torque."""
 ROUNDING = 4 * 2.0**-52
@@ -38,7 +40,8 @@ class Work(NamedTuple):
     """What one evaluation leaves behind, a value a connection, and the equations of the coordinates that are free.
 
     ``hold`` [Nm/rad]: a spring to the place before the step, so weak that it only keeps what is free from drifting;
-    ``reach`` [rad]: the largest angles to be expected, which tell what rounding leaves; one value each.
+    ``reach`` [rad]: the largest angles to be expected, which tell what rounding leaves, and by how much a step may
+    miss where the pace of the last would have led; ``pace`` [rad/s] of the free coordinates.
     """
 
     angle: Array
@@ -56,14 +59,18 @@ class Work(NamedTuple):
     move: Array
     hold: Array
     reach: Array
+    pace: Array
 
 
-def work_for(connected: Connected, coordinates: int, reach: float) -> Work:
-    """Room for a march over ``coordinates`` (the moved one among them) up to an angle of ``reach`` [rad]."""
+def work_for(connected: Connected, coordinates: int, reach: float, miss: float) -> Work:
+    """Room for a march over ``coordinates`` (the moved one among them) up to an angle of ``reach`` [rad].
+
+    ``miss`` [rad]: how far a step may miss where the pace of the one before would have led, before it is shortened.
+    """
     count, free = len(connected.stiffness), coordinates - 1
     stiffest = connected.stiffness.max(initial=0.0) + np.abs(connected.change).max(initial=0.0)
     square = np.zeros((free, free)), np.zeros(free, dtype=np.int64)
-    ends = np.zeros(free), np.array([1e-12 * stiffest]), np.array([reach])
+    ends = np.zeros(free), np.array([1e-12 * stiffest]), np.array([reach, miss]), np.zeros(free)
     values = [np.zeros(count) for _ in range(8)]
     given: tuple[Any, ...] = (*values, connected.law_values.copy(), np.zeros(free), *square, *ends)
     return Work(*given)
@@ -222,29 +229,56 @@ def settle(c: Connected, square: float, old: Array, place: Array, memory: Array,
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _coarse(old: Array, place: Array, step: float, w: Work) -> bool:
+    """Whether free coordinates went far from where their pace would have taken them, in a step that may be cut."""
+    largest = 0.0
+    for i in range(old.size - 1):
+        largest = max(largest, abs(place[i] - old[i] - step * w.pace[i]))
+    return step > QUICK and largest > w.reach[1]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _advance(
+    c: Connected, square: float, old: Array, place: Array, memory: Array, drive: float, step: float, w: Work
+) -> bool:
+    """One step to ``drive`` from ``old``, begun at the pace of the one before, or else from rest."""
+    free = w.rest.size
+    found = False
+    for guess in range(2):
+        if not found:
+            place[:free] = old[:free] + (1 - guess) * step * w.pace
+            place[free] = drive
+            found = settle(c, square, old, place, memory, step, w)
+    return found
+
+
+@numba.njit(cache=True, error_model="numpy")
 def moved(c: Connected, square: float, place: Array, memory: Array, drive: float, step: float, w: Work) -> int:
     """Moves the last coordinate to ``drive`` within ``step`` [s], in shorter steps where it must be; ``place`` and
-    ``memory`` are brought along.  Returns how many of them found no balance."""
+    ``memory`` are brought along.  Returns how many of them found no balance.
+
+    Where friction lets go the steps become so short that the speed in between is that which dampers allow: what a
+    jump loses then depends on no step.
+    """
     free = w.rest.size
     first, done, share, lost = place[free], 0.0, 1.0, 0
-    old, pace = place.copy(), np.zeros(free)
+    old, rough = place.copy(), False
     while done < 1.0:
-        ok = False
-        for guess in range(2):
-            place[:free] = old[:free] + (share if guess == 0 else 0.0) * pace
-            place[free] = first + (drive - first) * (done + share)
-            ok = settle(c, square, old, place, memory, share * step, w)
-            if ok or done == 0.0:
-                break
-        if ok or share <= LEAST:
-            lost += 0 if ok else 1
-            pace[:] = (place[:free] - old[:free]) / share
-            old[:] = place
-            memory[:] = w.memory
-            done += share
-            share = min(2.0 * share, 1.0 - done)
-        else:
+        ok = _advance(c, square, old, place, memory, first + (drive - first) * (done + share), share * step, w)
+        if not ok and rough:  # a shorter step finds nothing, the longer one did
+            share *= 2.0
+            ok = _advance(c, square, old, place, memory, first + (drive - first) * (done + share), share * step, w)
+        elif share > LEAST and (not ok or _coarse(old, place, share * step, w)):
+            rough = ok
             share *= 0.5
+            continue
+        rough = False
+        lost += 0 if ok else 1
+        w.pace[:] = (place[:free] - old[:free]) / (share * step)
+        old[:] = place
+        memory[:] = w.memory
+        done += share
+        share = min(2.0 * share, 1.0 - done)
     return lost
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
+from torsional.solvers.hysteresis.parts import grouped, picked
 from torsional.system import BoolArray, Connections, System
 
 NOTHING = 1e-9
@@ -44,7 +45,7 @@ def on_bench(system: System, turned: str, held: str) -> Bench:
     inside: BoolArray = np.all(np.abs(outside) < NOTHING, axis=1)
     places = np.column_stack([nodes[:, kept], node_drive])[inside]
     names = tuple(name for name, own in zip(system.nodes, inside, strict=True) if own)
-    return Bench(_restricted(system, rows, relevant), names, places)
+    return Bench(dataclasses.replace(system, connections=_restricted(c, rows, relevant)), names, places)
 
 
 def _refuse_ends(system: System, ends: Array, names: tuple[str, str]) -> None:
@@ -80,11 +81,7 @@ def _relevant(free: Array, drive: Array, rotates: BoolArray) -> tuple[BoolArray,
     Coordinates hang together through connections.  A group that stays at rest while the held end does, or goes with
     the turned end as one, takes no part.
     """
-    group = np.arange(free.shape[1])
-    for row in free[rotates]:
-        members = np.unique(group[row != 0])
-        if members.size:
-            group[np.isin(group, members)] = members[0]
+    group = grouped(free[rotates])
     relevant = np.zeros(len(drive), dtype=bool)
     kept: list[int] = []
     for label in np.unique(group):
@@ -99,17 +96,8 @@ def _relevant(free: Array, drive: Array, rotates: BoolArray) -> tuple[BoolArray,
     return relevant | direct, np.array(sorted(kept), dtype=np.int64)
 
 
-def _restricted(system: System, rows: Array, relevant: BoolArray) -> System:
-    """The system with the connections that take part, and those whose torque presses on one of them."""
-    c = system.connections
+def _restricted(c: Connections, rows: Array, relevant: BoolArray) -> Connections:
+    """The connections that take part, and those whose torque presses on one of them."""
     pressing = {name for own, load in zip(relevant, c.loads, strict=True) if own and load for name in load.share_of}
-    chosen = [i for i, name in enumerate(c.names) if relevant[i] or name in pressing]
-    arrays = ("stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
-    picked = Connections(
-        names=tuple(c.names[i] for i in chosen),
-        weights=rows[chosen],
-        laws=tuple(c.laws[i] for i in chosen),
-        loads=tuple(c.loads[i] for i in chosen),
-        **{name: getattr(c, name)[chosen] for name in arrays},
-    )
-    return dataclasses.replace(system, connections=picked)
+    chosen = np.flatnonzero([own or name in pressing for own, name in zip(relevant, c.names, strict=True)])
+    return picked(c, chosen, rows[chosen])
