@@ -10,8 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from torsional.components import Coupling, Inertia, Shaft
+from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Hinges, contact_time
+from torsional.laws import Contacts, Hinges, Law, contact_time
+from torsional.powertrain import Powertrain
+from torsional.solvers.periodic import periodic_response
+from torsional.system import assemble
 
 
 def test_without_contact_time_they_are_hinges() -> None:
@@ -84,6 +89,24 @@ def test_closed_cycles_lose_energy_or_none(
     rate = pace * size * (np.cos(t) + 2 * second * np.cos(2 * t + phase))
     power = (law.torque(angle, rate) - law.torque(angle)) * rate
     assert power.min() >= -1e-9 * max(1.0, abs(power).max())
+
+
+def test_periodic_motion_over_contacts_is_that_over_hinges() -> None:
+    """Contacts without a damper are sampled, hinges are not; a damper in the contact makes the swing smaller."""
+    drive = Excitation(("disc",), [0, 1], 1.0, [[0.0, 1.0]])
+
+    def swing(law: Law) -> float:
+        spring = Shaft("ground", "disc", 1.0, damping=0.04)
+        parts = {"disc": Inertia(1.0), "spring": spring, "stops": Coupling("ground", "disc", law, damping=0.04)}
+        found = periodic_response(
+            assemble(Powertrain(parts)), drive, (0.7, 1.0), highest_order=9, at=[0.9], stability=False, depth=0
+        )
+        (at,) = np.flatnonzero(np.isclose(found.speed.values, 0.9))
+        return float(abs(found.twist.sel(element="stops", order=1)).values[at])
+
+    hinged = swing(Hinges(0.0, (0.5, -0.5), (1.0, -1.0), (2.0, 2.0)))
+    assert swing(Contacts.between(-0.5, 0.5, 2.0)) == pytest.approx(hinged, rel=2e-5)
+    assert 0.9 * hinged < swing(Contacts.between(-0.5, 0.5, 2.0, 0.2)) < 0.999 * hinged
 
 
 @pytest.mark.parametrize(
