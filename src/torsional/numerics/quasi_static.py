@@ -11,131 +11,29 @@ reads the arrays of `torsional.numerics.stepping_data`; levels over time count a
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
-import numba
-import numpy as np
-
-from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.callbacks import law_at
+from torsional.numerics.arrays import Array
+from torsional.numerics.quasi_static_torques import Work, evaluate
 from torsional.numerics.small_linear import backsolve, factor
-from torsional.numerics.sources import row_product
 from torsional.numerics.stepping_data import Connected
+from torsional.numerics.uncounted import uncounted
 
 ITERATIONS = 60
-CUTS = 25
-"""Places that are tried along one Newton step."""
-LEAST = 2.0**-20
-"""Share of a step below which no shorter one is tried."""
+CUTS = 25  # of one Newton step
+LEAST = 2.0**-20  # of a step: no shorter one is tried
 QUICK = 1e-5
 """Time [s] below which no step is shortened for the sake of a jump."""
 NEAR = 1e-10
 """What may be left of the balance, over the largest torque."""
-ROUNDING = 4 * 2.0**-52
+ROUNDING = 2.0**-50
 ENOUGH = 0.5
 """A whole Newton step is taken where the unbalanced torque along it falls to this."""
 
 
-class Work(NamedTuple):
-    """What one evaluation leaves behind, a value a connection, and the equations of the coordinates that are free.
-
-    ``hold`` [Nm/rad]: a spring to the place before the step, so weak that it only keeps what is free from drifting;
-    ``reach`` [rad]: the largest angles to be expected, which tell what rounding leaves, and by how much a step may
-    miss where the pace of the last would have led; ``pace`` [rad/s] of the free coordinates.
-    """
-
-    angle: Array
-    spring: Array
-    spring_slope: Array
-    torque: Array
-    slope: Array
-    load: Array
-    load_slope: Array
-    memory: Array
-    law_values: Array
-    rest: Array
-    tangent: Array
-    order: IntArray
-    move: Array
-    hold: Array
-    reach: Array
-    pace: Array
+_factor = uncounted(fastmath={"contract"})(factor.py_func)
+_backsolve = uncounted()(backsolve.py_func)
 
 
-def work_for(connected: Connected, coordinates: int, reach: float, miss: float) -> Work:
-    """Room for a march over ``coordinates`` (the moved one among them) up to an angle of ``reach`` [rad].
-
-    ``miss`` [rad]: how far a step may miss where the pace of the one before would have led, before it is shortened.
-    """
-    count, free = len(connected.stiffness), coordinates - 1
-    stiffest = connected.stiffness.max(initial=0.0) + np.abs(connected.change).max(initial=0.0)
-    square = np.zeros((free, free)), np.zeros(free, dtype=np.int64)
-    ends = np.zeros(free), np.array([1e-12 * stiffest]), np.array([reach, miss]), np.zeros(free)
-    values = [np.zeros(count) for _ in range(8)]
-    given: tuple[Any, ...] = (*values, connected.law_values.copy(), np.zeros(free), *square, *ends)
-    return Work(*given)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _spring(c: Connected, e: int, square: float, rate: float, step: float, w: Work) -> None:
-    """Torque and slope of spring, hinges and damper of one connection at its angle."""
-    angle = w.angle[e]
-    stiffness = c.stiffness[e] + square * c.centrifugal[e]
-    torque, slope = stiffness * angle + c.damping[e] * rate, stiffness + c.damping[e] / step
-    for h in range(c.hinge_start[e], c.hinge_start[e + 1]):
-        side, change, delay = c.side[h], c.change[h], c.contact_time[h]
-        beyond = side * (angle - c.gap[h] + delay * rate)
-        if beyond > 0.0:
-            torque += side * change * beyond
-            slope += change * (1.0 + delay / step)
-    w.spring[e], w.spring_slope[e] = torque, slope
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _load(c: Connected, e: int, square: float, w: Work) -> float:
-    """The normal load of one connection under the springs' torques."""
-    load = c.load_constant[e] + square * c.load_centrifugal[e]
-    for k in range(c.load_start[e], c.load_start[e + 1]):
-        load += c.load_share[k] * abs(w.spring[c.load_of[k]])
-    return float(max(0.0, load))
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _law(c: Connected, e: int, square: float, rate: float, memory: float, step: float, w: Work) -> None:
-    """Adds the law of one connection; its torque is a straight line in the normal load, whose slope is a chord's."""
-    told_by = law_at(c.address[e])
-    values = w.law_values[c.law_start[e] : c.law_start[e + 1]]
-    place = c.load_place[e]
-    if place >= 0:
-        w.load[e] = _load(c, e, square, w)
-        more = max(w.load[e], 1.0)
-        values[place] = w.load[e] + more
-        w.load_slope[e] = told_by(values, w.angle[e], rate, memory, step)[0]
-        values[place] = w.load[e]
-    told = told_by(values, w.angle[e], rate, memory, step)
-    w.torque[e] += told[0]
-    w.slope[e] += told[1] + told[2] / step
-    w.memory[e] = told[4]
-    if place >= 0:
-        w.load_slope[e] = (w.load_slope[e] - told[0]) / more
-
-
-@numba.njit(cache=True, error_model="numpy")
-def evaluate(c: Connected, square: float, old: Array, place: Array, memory: Array, step: float, w: Work) -> None:
-    """Torques and slopes of all connections at ``place``, reached from ``old`` within ``step`` [s]; ``square`` is Ω².
-
-    ``old``, ``place`` (coordinates,), ``memory`` (E,) before the step.
-    """
-    for e in range(c.stiffness.size):
-        w.angle[e] = row_product(c.rows, e, place)
-        _spring(c, e, square, (w.angle[e] - row_product(c.rows, e, old)) / step, step, w)
-        w.torque[e], w.slope[e] = w.spring[e], w.spring_slope[e]
-    for e in range(c.stiffness.size):
-        if c.address[e] != 0:
-            _law(c, e, square, (w.angle[e] - row_product(c.rows, e, old)) / step, memory[e], step, w)
-
-
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def unbalanced(c: Connected, old: Array, place: Array, w: Work) -> bool:
     """What is left of the balance of every free coordinate; whether it is next to nothing."""
     free = w.rest.size
@@ -154,7 +52,7 @@ def unbalanced(c: Connected, old: Array, place: Array, w: Work) -> bool:
     return bool(left <= NEAR * largest + ROUNDING * rounding)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _add(c: Connected, e: int, j: int, slope: float, w: Work) -> None:
     """Adds w_e w_jᵀ times a slope to the tangent."""
     free = w.rest.size
@@ -167,7 +65,7 @@ def _add(c: Connected, e: int, j: int, slope: float, w: Work) -> None:
                     w.tangent[row, column] += slope * c.rows.weight[k] * c.rows.weight[m]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _newton_step(c: Connected, w: Work) -> bool:
     """The Newton step into ``move``; whether there is one."""
     w.tangent[:] = 0.0
@@ -181,19 +79,22 @@ def _newton_step(c: Connected, w: Work) -> bool:
     for i in range(w.rest.size):
         w.tangent[i, i] += w.hold[0]
         w.move[i] = -w.rest[i]
-    if factor(w.tangent, w.order) == 0.0:
+    if _factor(w.tangent, w.order) == 0.0:
         return False
-    backsolve(w.tangent, w.order, w.move)
+    _backsolve(w.tangent, w.order, w.move)
     return True
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _power(w: Work) -> float:
-    """The unbalanced torque along the Newton step: negative before the balance, positive beyond it."""
-    return float(np.dot(w.rest, w.move))
+    """The unbalanced torque along the Newton step: negative before the balance."""
+    total = 0.0
+    for i in range(w.rest.size):
+        total += w.rest[i] * w.move[i]
+    return total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def settle(c: Connected, square: float, old: Array, place: Array, memory: Array, step: float, w: Work) -> bool:
     """Moves the free coordinates of ``place`` to their balance at the end of a step; whether they found it.
 
@@ -228,7 +129,7 @@ def settle(c: Connected, square: float, old: Array, place: Array, memory: Array,
     return False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _coarse(old: Array, place: Array, step: float, w: Work) -> bool:
     """Whether free coordinates went far from where their pace would have taken them, in a step that may be cut."""
     largest = 0.0
@@ -237,7 +138,7 @@ def _coarse(old: Array, place: Array, step: float, w: Work) -> bool:
     return step > QUICK and largest > w.reach[1]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _advance(
     c: Connected, square: float, old: Array, place: Array, memory: Array, drive: float, step: float, w: Work
 ) -> bool:
@@ -246,13 +147,20 @@ def _advance(
     found = False
     for guess in range(2):
         if not found:
-            place[:free] = old[:free] + (1 - guess) * step * w.pace
+            for i in range(free):
+                place[i] = old[i] + (1 - guess) * step * w.pace[i]
             place[free] = drive
             found = settle(c, square, old, place, memory, step, w)
     return found
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
+def _copy(given: Array, to: Array) -> None:
+    for i in range(given.size):
+        to[i] = given[i]
+
+
+@uncounted()
 def moved(c: Connected, square: float, place: Array, memory: Array, drive: float, step: float, w: Work) -> int:
     """Moves the last coordinate to ``drive`` within ``step`` [s], in shorter steps where it must be; ``place`` and
     ``memory`` are brought along.  Returns how many of them found no balance.
@@ -262,7 +170,8 @@ def moved(c: Connected, square: float, place: Array, memory: Array, drive: float
     """
     free = w.rest.size
     first, done, share, lost = place[free], 0.0, 1.0, 0
-    old, rough = place.copy(), False
+    old, rough = w.old, False
+    _copy(place, old)
     while done < 1.0:
         ok = _advance(c, square, old, place, memory, first + (drive - first) * (done + share), share * step, w)
         if not ok and rough:  # a shorter step finds nothing, the longer one did
@@ -274,15 +183,16 @@ def moved(c: Connected, square: float, place: Array, memory: Array, drive: float
             continue
         rough = False
         lost += 0 if ok else 1
-        w.pace[:] = (place[:free] - old[:free]) / (share * step)
-        old[:] = place
-        memory[:] = w.memory
+        for i in range(free):
+            w.pace[i] = (place[i] - old[i]) / (share * step)
+        _copy(place, old)
+        _copy(w.memory, memory)
         done += share
         share = min(2.0 * share, 1.0 - done)
     return lost
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def march(
     c: Connected,
     square: float,
@@ -299,5 +209,7 @@ def march(
     lost = 0
     for s in range(drive.size):
         lost += moved(c, square, place, memory, drive[s], step, w)
-        places[s], told[0, s], told[1, s] = place, w.torque, w.load
+        _copy(place, places[s])
+        _copy(w.torque, told[0, s])
+        _copy(w.load, told[1, s])
     return lost

@@ -14,7 +14,8 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.loops import half_swing, harmonic_stiffness, loss_factor, loss_per_cycle, secant_stiffness
-from torsional.numerics.quasi_static import march, work_for
+from torsional.numerics.quasi_static import march
+from torsional.numerics.quasi_static_torques import work_for
 from torsional.results import dataset
 from torsional.solvers.hysteresis.bench import Bench, on_bench
 from torsional.solvers.hysteresis.parts import parts_of
