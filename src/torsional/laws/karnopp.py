@@ -70,8 +70,8 @@ class Karnopp(Law):
     Karnopp's own law (J. Dyn. Syst. Meas. Control 107 (1985) 100) holds whatever the other torques ask for while
     |u| < D.  The bristle makes that a law of its two ends.  Choose k so stiff that the twist N g_s/k is of no interest,
     d near √(k J) of the inertia that it stops, lest it rings out of the band, and D above the rate Ṫ/k at which rising
-    torques bend it; an implicit step h has one solution while h N (g_s − g_c)/D is less than that inertia.  Raises ModelError for values that are negative, or zero where the law divides by them, and for
-    g_s < g_c.
+    torques bend it; an implicit step h has one solution while h N (g_s − g_c)/D is less than that inertia.  Raises
+    ModelError for values that are negative, or zero where the law divides by them, and for g_s < g_c.
 
     >>> law = Karnopp(1.0, 1.5, stick_rate=0.01, bristle_stiffness=1e3)
     >>> [float(v) for v in law.march([0.0, 0.001, 0.002, 0.02], step=[1.0, 1.0, 1.0, 0.1])[0].round(9)]
