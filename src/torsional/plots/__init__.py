@@ -5,6 +5,7 @@ from torsional.plots.campbell import plot_campbell, plot_resonance_speeds
 from torsional.plots.chain import plot_chain
 from torsional.plots.cycle import plot_cycle
 from torsional.plots.engine import plot_engine_orders, plot_full_load
+from torsional.plots.hysteresis import plot_hysteresis, plot_hysteresis_loops
 from torsional.plots.maps import plot_map, plot_ratio_map
 from torsional.plots.modes import plot_energy_shares, plot_mode_shapes
 from torsional.plots.orders import plot_gears, plot_order_cuts
@@ -25,6 +26,8 @@ __all__ = [
     "plot_engine_orders",
     "plot_full_load",
     "plot_gears",
+    "plot_hysteresis",
+    "plot_hysteresis_loops",
     "plot_loops",
     "plot_map",
     "plot_mode_shapes",

@@ -1,6 +1,6 @@
 """Hysteresis loops of an absorber: torque over angle under a slow sweep at any rotational speed."""
 
 from torsional.solvers.hysteresis.bench import Bench, on_bench
-from torsional.solvers.hysteresis.sweeps import absorber_ends, hysteresis, model_hysteresis
+from torsional.solvers.hysteresis.sweeps import CLOSED, RATE, absorber_ends, hysteresis, model_hysteresis
 
-__all__ = ["Bench", "absorber_ends", "hysteresis", "model_hysteresis", "on_bench"]
+__all__ = ["CLOSED", "RATE", "Bench", "absorber_ends", "hysteresis", "model_hysteresis", "on_bench"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -48,13 +48,14 @@ def hysteresis(
     rate: float = RATE,
     centre: float = 0.0,
     samples: int = SAMPLES,
+    progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
     """Loops of the torque at a node ``turned`` against ``held``, both going round at a mean ``speed`` [rad/s].
 
     The relative angle θ_turned − θ_held goes to and fro by ± each ``sweep`` [rad] about ``centre`` [rad], at a
     constant ``rate`` [rad/s], from a relaxed state until the loop closes.  Inertia plays no part; friction remembers;
     normal loads follow the speed of the reference node and the springs.  What acts only on one side of the two nodes,
-    or against the ground, is left out.  ``samples`` steps a cycle, of backward Euler.
+    or against the ground, is left out.  ``samples`` steps a cycle, of backward Euler; ``progress`` is told (done, all).
 
     Gives over ``speed``, ``sweep`` and ``cycle`` ("first", "closed"): ``torque`` over ``sample``, angles of nodes
     relative to ``held``, twists, torques and normal loads of elements; and of the closed loop its ``loss``,
@@ -75,7 +76,11 @@ def hysteresis(
     speeds, sweeps = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speed, sweep))
     _checked(speeds, sweeps, rate, samples)
     bench = on_bench(system, turned, held)
-    runs = [[_run(bench, w, a, rate, centre, samples) for a in sweeps] for w in speeds]
+    runs: list[list[Run]] = []
+    for done, w in enumerate(speeds):
+        runs.append([_run(bench, w, a, rate, centre, samples) for a in sweeps])
+        if progress:
+            progress(done + 1, len(speeds))
     return _told(bench, runs, speeds, sweeps, (turned, held), rate=rate, centre=centre)
 
 
