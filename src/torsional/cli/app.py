@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,10 +9,10 @@ import typer
 
 from torsional import __version__
 from torsional.cli import options as o
+from torsional.cli import slow_sweep
+from torsional.cli.jobs import Job, analysis, job
 
-Job = Callable[[], None]
 HELP = ["--help", "-h"]
-RESULTS = (".nc", ".csv", ".json", ".png", ".svg")
 
 app = typer.Typer(
     name="torsional",
@@ -30,29 +27,6 @@ app = typer.Typer(
 def command() -> Any:
     """The command line as one callable; called without typer's own handling it returns the job to do."""
     return typer.main.get_command(app)
-
-
-def _job(module: str, **asked: Any) -> Job:
-    """What was asked for, to be done after parsing, so that failures pass through no hands but ours."""
-    return partial(_do, module, asked)
-
-
-def _do(module: str, asked: dict[str, Any]) -> None:
-    import_module(f"torsional.cli.{module}").run(**asked)
-
-
-def _analysis(module: str, asked: dict[str, Any], suffixes: tuple[str, ...] = RESULTS) -> Job:
-    """A job on a model file."""
-    return partial(_analyse, module, asked, suffixes)
-
-
-def _analyse(module: str, asked: dict[str, Any], suffixes: tuple[str, ...]) -> None:
-    """Read the model before the analyses are imported: a bad file or output name is answered at once."""
-    from torsional.cli.request import requested
-
-    common = {key: asked.pop(key) for key in ("model", "changes", "output", "as_json", "quiet")}
-    request = requested(suffixes=suffixes, **common)
-    import_module(f"torsional.cli.{module}").run(request, **asked)
 
 
 def _print_version(wanted: bool) -> None:
@@ -86,7 +60,7 @@ def check(
     Tells what the file holds, how its springs stand under full load, and its first modes.  Exit code 2 for a file that
     is no model.
     """
-    return _analysis("check", locals(), (".yaml", ".yml") if expand else (".json",))
+    return analysis("check", locals(), (".yaml", ".yml") if expand else (".json",))
 
 
 @app.command()
@@ -110,7 +84,7 @@ def modes(
 
     Tells as well at which engine speed an order meets each mode.
     """
-    return _analysis("modes", locals())
+    return analysis("modes", locals())
 
 
 @app.command()
@@ -132,7 +106,7 @@ def respond(
 
     At full load or at one mean torque; tells the peaks of the strongest orders and of all orders together.
     """
-    return _analysis("respond", locals())
+    return analysis("respond", locals())
 
 
 @app.command("map")
@@ -155,7 +129,7 @@ def map_(
 
     Tells the worst cells within full load.
     """
-    return _analysis("map", locals())
+    return analysis("map", locals())
 
 
 @app.command()
@@ -172,7 +146,7 @@ def campbell(
     quiet: o.Quiet = False,
 ) -> Job:
     """Where engine orders meet the modes."""
-    return _analysis("campbell", locals())
+    return analysis("campbell", locals())
 
 
 @app.command()
@@ -198,7 +172,7 @@ def periodic(
 
     Stable and unstable ones with their bifurcations, sub-harmonic ones among them, which no linear analysis shows.
     """
-    return _analysis("periodic", locals())
+    return analysis("periodic", locals())
 
 
 @app.command()
@@ -228,7 +202,50 @@ def subharmonic(
 
     Order 1.5 of a six-cylinder: over speed and mean torque, how strong, and where it begins.
     """
-    return _analysis("subharmonic", locals())
+    return analysis("subharmonic", locals())
+
+
+@app.command()
+def transient(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    torque: o.Torque = "",
+    speed: o.SpeedInTime = "",
+    duration: o.Duration = "",
+    step: o.Step = "",
+    node: o.Nodes = None,
+    element: o.Elements = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Motion in time, at one speed or running up.
+
+    Laws, clearances, stops and friction as they are, the engine burning over its own crank angle.  Tells peaks, travel
+    against stops and where the energy went; Ctrl-C keeps what was reached.
+    """
+    return analysis("transient", locals())
+
+
+@app.command()
+def scenario(
+    model: o.ModelFile,
+    scenario: o.ScenarioName,
+    setting: o.Settings = None,
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """An engine start, a clutch engagement, a shift … in time.
+
+    Tells peaks, travel against stops and where the energy went; Ctrl-C keeps what was reached.
+    """
+    return analysis("scenario", locals())
+
+
+app.command()(slow_sweep.hysteresis)
 
 
 @app.command()
@@ -248,13 +265,13 @@ def report(
     quiet: o.Quiet = False,
 ) -> Job:
     """One HTML page about one model or several."""
-    return _job("report", **locals())
+    return job("report", **locals())
 
 
 @app.command()
 def schema(output: o.Output = None) -> Job:
     """JSON Schema of model files, for editors."""
-    return _job("starting", what="schema", **locals())
+    return job("starting", what="schema", **locals())
 
 
 @app.command()
@@ -266,10 +283,10 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")] = False,
 ) -> Job:
     """A commented model file to begin with."""
-    return _job("starting", what="new", kind=kind, output=[output] if output else None, force=force)
+    return job("starting", what="new", kind=kind, output=[output] if output else None, force=force)
 
 
 @app.command()
 def warmup(as_json: o.Json = False, quiet: o.Quiet = False) -> Job:
     """Compile the numerical kernels once."""
-    return _job("warmup", **locals())
+    return job("warmup", **locals())

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from torsional.cli.interrupts import listening
+from torsional.cli.interrupts import Kept, listening
 from torsional.errors import TorsionalError
 
 DONE, FAILED, MENDABLE, STOPPED, UNREAD = 0, 1, 2, 130, 141
@@ -101,6 +101,11 @@ def _stopped(_: BaseException) -> int:
     return STOPPED
 
 
+def _kept(failure: BaseException) -> int:
+    complain(str(failure), kind="stopped")
+    return STOPPED
+
+
 def _unread(_: BaseException) -> int:
     """Nobody reads stdout any more (| head): be silent, also in the flush while Python shuts down."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -127,6 +132,7 @@ def _exits(failure: BaseException) -> int:
 
 _ANSWERS: tuple[tuple[type[BaseException], Callable[[BaseException], int]], ...] = (
     (TorsionalError, _mendable),
+    (Kept, _kept),
     (KeyboardInterrupt, _stopped),
     (BrokenPipeError, _unread),
     (MemoryError, _full_memory),

@@ -11,9 +11,18 @@ from types import FrameType
 _received = threading.Event()
 
 
+class Kept(KeyboardInterrupt):
+    """Ctrl-C after which what had been reached was handed back; the message says how far that was."""
+
+
 def _receive(_number: int, _frame: FrameType | None) -> None:
     _received.set()
     raise KeyboardInterrupt
+
+
+def taken() -> None:
+    """A Ctrl-C has been answered: what was reached may be written."""
+    _received.clear()
 
 
 def _here() -> bool:

@@ -83,6 +83,43 @@ SpeedOrRange = Annotated[
         show_default=False,
     ),
 ]
+SpeedInTime = Annotated[
+    str,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="SPEED",
+        help="Mean engine speed, as '900 rpm', or a run-up, as 600:1200rpm; default: where full load is highest.",
+        show_default=False,
+    ),
+]
+Duration = Annotated[
+    str,
+    typer.Option("--duration", "-d", metavar="TIME", help="How long it runs, as 3s; default: 2 s.", show_default=False),
+]
+Step = Annotated[
+    str,
+    typer.Option("--step", metavar="TIME", help="Step of time, as 0.05ms; default: 0.1 ms.", show_default=False),
+]
+ScenarioName = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO",
+        help="engine_start, engine_stop, tip_in, tip_out, clutch_engagement, gear_shift, stall, traction_loss, "
+        "idle_pulse, or a scenario file.",
+        show_default=False,
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--setting",
+        "-s",
+        metavar="PATH=VALUE",
+        help="Change the scenario, as starter.speed=150rpm; may be repeated.",
+        show_default=False,
+    ),
+]
 Parameter = Annotated[
     str,
     typer.Option(

@@ -21,3 +21,22 @@ def progress(task: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     with Progress(console=Console(stderr=True), transient=True) as bar:
         number = bar.add_task(task, total=None)
         yield lambda done, total: bar.update(number, completed=done, total=total)
+
+
+@contextmanager
+def running(task: str, quiet: bool) -> Iterator[Callable[[float, float, float], None]]:
+    """A function (time, end, speed) that tells how far a run in time is, and how much faster than life it goes."""
+    if quiet or not styled(sys.stderr):
+        yield lambda time, end, speed: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[told]}")
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        number = bar.add_task(task, total=None, told="")
+
+        def moved(time: float, end: float, speed: float) -> None:
+            bar.update(number, completed=time, total=end, told=f"{time:.2f} of {end:g} s, {speed:.2g} × real time")
+
+        yield moved

@@ -128,7 +128,7 @@ class EngineStop(Scenario):
 
     title: ClassVar[str] = "Engine stop"
     scenario: Literal["engine_stop"]
-    duration: Time = 2.0
+    duration: Time = 2.5
     speed: Speed | None = Field(None, description="before; default: idle")
     fuel_off: Moment = 0.2
 
@@ -190,7 +190,7 @@ class ClutchEngagement(Scenario):
     vehicle_at: SpeedOrZero = Field(0.0, description="speed of the gearbox input at which the vehicle rolls")
     torque: Torque = Field(800.0, description="mean engine torque at most, asked for by the governor")
     road_load: Torque | None = Field(None, description="resistance, at the node that takes up the load")
-    clutch: ClutchLinings = Field(default_factory=_usual(ClutchLinings))
+    clutch: ClutchLinings = Field(default_factory=_usual(ClutchLinings, within=1.0))
 
     def moments(self) -> list[tuple[str, float]]:
         """The beginning of the engagement."""
@@ -216,7 +216,7 @@ class GearShift(Scenario):
 
 
 class Stall(Scenario):
-    """The wheels are braked in gear with the clutch closed until the engine stalls."""
+    """The wheels lock on a slippery road in gear with the clutch closed, and the engine stalls."""
 
     title: ClassVar[str] = "Stall"
     scenario: Literal["stall"]
@@ -226,6 +226,10 @@ class Stall(Scenario):
     torque: Torque = Field(600.0, description="mean engine torque, up to the end of combustion")
     brake: Torque = Field(40e3, description="at the braked node")
     node: Node = Field("wheels", description="that is braked")
+    tyres: str = Field("tyres", description="connection between wheels and vehicle", max_length=64)
+    grip: Torque | None = Field(
+        None, description="torque that the wheels hold; default: half the brake, so that they lock"
+    )
     at: Moment = Field(0.2, description="when braking begins")
     within: Time = Field(0.15, description="until the brake is fully on")
     fuel_off: Speed = Field(300 * RPM, description="engine speed under which nothing burns any more")

@@ -23,6 +23,8 @@ from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import cylinders, fuel_cut, heat_for, pulse, ramp, speed_governor
 from torsional.units import show
 
+LOCKING = 0.5
+"""Grip over the brake's torque where none is given: the wheels lock."""
 CUT_WIDTH = 3.0
 """Speed [rad/s] over which an engine that stalls stops burning."""
 ROLLING, GRAVITY = 0.006, 9.81
@@ -39,6 +41,7 @@ def tip(block: TipIn | TipOut, model: Model) -> Plan:
     wanted = ramp(block.at, block.within, block.before, block.after)
     return Plan(
         **_in_gear(block, model, lines.line_of(model, gear), gear),
+        nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=(motor,),
         speed=block.speed,
         start="vibrating",
@@ -66,6 +69,7 @@ def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear, lines.LININGS),
+        nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=drives,
         speed=block.speed,
         lag=block.speed - block.vehicle_at,
@@ -89,6 +93,7 @@ def gear_shift(block: GearShift, model: Model) -> Plan:
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, new, lines.LININGS),
+        nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=(cylinders(model, block.speed, most, pulls),),
         speed=block.speed,
         lag=block.speed - rolling,
@@ -105,17 +110,20 @@ def stall(block: Stall, model: Model) -> Plan:
     """A brake on the wheels, the engine burning until it is too slow."""
     gear = lines.gear_of(model, block.gear)
     within_stop(model, gear, torque=block.torque)
-    line = lines.braked(lines.line_of(model, gear), block.node, block.brake)
+    road = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip or LOCKING * block.brake)
+    line = lines.braked(road, block.node, block.brake)
     most, (share,) = heat_for(model, block.speed, [block.torque])
     crank = lines.crank_of(model)
     drives = (cylinders(model, block.speed, most, ((0.0,), (share,))), fuel_cut(crank, block.fuel_off, CUT_WIDTH))
     pressed = ramp(block.at, block.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear),
+        nodes=(_turning(line, block.tyres), lines.load_of(model)),
         drives=drives,
         speed=block.speed,
         start="vibrating",
         hold=lines.load_of(model),
+        stuck=(lines.ROAD,),
         levels={"brake": pressed},
         shown={"brake": (_times(pressed, block.brake), "torque")},
     )
@@ -125,11 +133,12 @@ def traction_loss(block: TractionLoss, model: Model) -> Plan:
     """Wheels that spin on a slippery stretch and meet dry road again."""
     gear = lines.gear_of(model, block.gear, len(model.gear_names) // 2)
     within_stop(model, gear, torque=block.torque)
-    line = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip)
+    line = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip, "grip")
     most, (share,) = heat_for(model, block.speed, [block.torque])
     grip = pulse(block.lost, block.found - block.lost, block.slippery, 1.0)
     return Plan(
-        **_in_gear(block, model, line, gear, lines.ROAD),
+        **_in_gear(block, model, line, gear),
+        nodes=(_turning(line, block.tyres), lines.load_of(model)),
         drives=(cylinders(model, block.speed, most, ((0.0,), (share,))),),
         speed=block.speed,
         start="vibrating",
@@ -156,6 +165,11 @@ def within_stop(model: Model, gear: str, **torques: float) -> None:
                 raise ModelError(f"'{spring}' would rest on its stop", where=key, **told, remedy=remedy)
 
 
+def _turning(line: Powertrain, tyres: str) -> str:
+    """The node on the rim's side of the tyres."""
+    return str(line[tyres].b)
+
+
 def _road_load(model: Model) -> float:
     """Rolling resistance of the vehicle at its wheels [Nm]."""
     vehicle = next((part for part in model.components.values() if isinstance(part, Vehicle)), None)
@@ -177,7 +191,6 @@ def _in_gear(block: Scenario, model: Model, line: Powertrain, gear: str, *watche
         "step": block.step,
         "crank": lines.crank_of(model),
         "springs": tuple(name for name in marks.springs if name in line.components),
-        "watched": tuple(name for name in (marks.clutch, *watched) if name in line.components),
-        "nodes": tuple(node for node in (marks.input,) if node in line.nodes),
+        "watched": tuple(name for name in watched or (marks.clutch,) if name in line.components),
         "gear": gear,
     }

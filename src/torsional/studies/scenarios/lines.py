@@ -109,13 +109,13 @@ def braked(line: Powertrain, node: str, torque: float) -> Powertrain:
     return line.joined({BRAKE: brake})
 
 
-def gripping(line: Powertrain, tyres: str, grip: float) -> Powertrain:
-    """The line whose ``tyres`` hold the road by friction of the level "grip", a contact patch between them and it."""
+def gripping(line: Powertrain, tyres: str, grip: float, level: str = "") -> Powertrain:
+    """The line whose ``tyres`` hold the road by friction, of a ``level``, a contact patch between them and it."""
     if tyres not in line.components:
         raise ModelError(f"there is no connection '{tyres}'", where="tyres", remedy=nearest(tyres, line.components))
     vehicle = _ends(line, tyres)[0]
     values: dict[str, Any] = {"stiffness": STICKING * grip, "breakaway": 1.0, "damping": 0.1 * grip}
-    road = SlipClutch.of_capacity(vehicle, PATCH, grip, level="grip", **values)
+    road = SlipClutch.of_capacity(vehicle, PATCH, grip, level=level, **values)
     held: Any = line[tyres]
     moved = {**line.components, tyres: dataclasses.replace(held, a=PATCH), PATCH: Inertia(PATCH_INERTIA), ROAD: road}
     return Powertrain(moved, line.parts, line.reference)

@@ -1,0 +1,52 @@
+"""A model in gear at one speed or running up, driven by its cylinders, the speed given as by an ideal drive."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from torsional.model import Model
+from torsional.solvers.transient.cylinders import CylinderTorques
+from torsional.solvers.transient.run import Progress, transient
+from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.studies.scenarios import lines
+from torsional.studies.scenarios.driving import within_stop
+from torsional.studies.scenarios.running import OUTPUT, STEP, with_figures
+from torsional.system import assemble
+
+
+def run_up(
+    model: Model,
+    speed: SpeedProfile,
+    torque: float,
+    duration: float,
+    gear: str = "",
+    *,
+    step: float | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Motion of a ``model`` in a ``gear`` at a mean engine ``torque`` [Nm] over a ``duration`` [s], with its figures.
+
+    The mean speed follows the profile, whatever torque that takes; cylinders burn over the crank's own angle, their
+    masses move exactly, friction and pressures are those at the middle speed.  It begins in steady vibration, the mean
+    torque is taken up where the model's load is.  Raises ModelError for a torque that rests on a stop.
+
+    Dataset of `transient` with what `torsional.studies.scenarios.figures.read_off` adds.
+    """
+    within_stop(model, gear, torque=torque)
+    system = assemble(lines.line_of(model, gear))
+    motor = CylinderTorques.of(model, sum(speed.range) / 2, torque)
+    width = step or STEP
+    run = transient(
+        system,
+        motor,
+        duration,
+        "vibrating",
+        speed=speed,
+        hold=lines.load_of(model),
+        reference=lines.crank_of(model),
+        step=width,
+        output=max(OUTPUT, width),
+        progress=progress,
+    )
+    marks = model.landmarks
+    return with_figures(run, system, (*marks.springs, marks.clutch))

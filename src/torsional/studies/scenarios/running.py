@@ -1,0 +1,68 @@
+"""A scenario from file and model to a run with its figures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+
+import xarray as xr
+
+from torsional.errors import ModelError
+from torsional.files.scenario_schema import Scenario
+from torsional.model import Model
+from torsional.solvers.transient.run import Progress, transient
+from torsional.studies.scenarios.figures import read_off, scheduled
+from torsional.studies.scenarios.kinds import planned
+from torsional.studies.scenarios.plan import FOLLOWING, Plan
+from torsional.system import System, assemble
+
+STEP, OUTPUT = 1e-4, 5e-4
+"""Time step, and interval of what is recorded [s], where nothing else is asked for."""
+
+
+def run_scenario(scenario: Scenario, model: Model, progress: Progress | None = None) -> xr.Dataset:
+    """What happens to a model in a scenario: the Dataset of `transient` with the figures of `read_off`.
+
+    ``schedule`` (event, time) is what was done; attributes name scenario, gear and what is worth looking at.
+    Interrupted from the keyboard it gives what was reached, ``status`` says so.
+    Raises ModelError for gears, nodes, torques and values that cannot be, and for steps too large for the line.
+    """
+    run = run_plan(planned(scenario, model), progress)
+    return run.assign_attrs(scenario=scenario.scenario, model=model.name, model_hash=model.hash)
+
+
+def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
+    """The run of a plan."""
+    system = assemble(plan.line)
+    step = plan.step or STEP
+    run = transient(
+        system,
+        plan.drives,
+        plan.duration,
+        plan.started(system),
+        speed=plan.speed,
+        hold=plan.hold,
+        levels=plan.levels,
+        reference=plan.crank,
+        reference_time=FOLLOWING,
+        step=step,
+        output=max(OUTPUT, step),
+        progress=progress,
+    )
+    if plan.step is not None and "refined" in run.attrs:
+        told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
+        raise ModelError("the step is too large for this line", where="step", **told, remedy="or leave the key out")
+    named = {"title": plan.title, "gear": plan.gear, "crank": plan.crank}
+    listed = {"springs": plan.springs, "watched": plan.watched, "looked_at": plan.nodes}
+    told = {key: json.dumps(names) for key, names in listed.items()}
+    figures = with_figures(run, system, (*plan.springs, *plan.watched))
+    return scheduled(figures, plan.shown).assign_attrs({**named, **told})
+
+
+def with_figures(run: xr.Dataset, system: System, first: Sequence[str]) -> xr.Dataset:
+    """The run with what `read_off` adds; ``told`` names the elements worth a row, some ``first``, dampers left out."""
+    c = system.connections
+    laws = dict(zip(c.names, c.laws, strict=True))
+    carrying = [name for name, k in zip(c.names, c.stiffness, strict=True) if k > 0 or laws[name] is not None]
+    listed = dict.fromkeys([*(name for name in first if name in c.names), *carrying])
+    return read_off(run, laws).assign_attrs(told=json.dumps(list(listed)))
