@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -16,13 +15,14 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.crank_kinematics import piston_ratios
 from torsional.numerics.stepping_data import Driven, Governed, Rows
+from torsional.numerics.uncounted import uncounted
 
 TURN = 2.0 * np.pi
 
-_piston = numba.njit(cache=True, error_model="numpy")(piston_ratios)
+_piston = uncounted()(piston_ratios)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def row_product(rows: Rows, i: int, x: Array) -> float:
     """Row i times the coordinates x (N,)."""
     total = 0.0
@@ -31,7 +31,7 @@ def row_product(rows: Rows, i: int, x: Array) -> float:
     return total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def row_sum(rows: Rows, i: int) -> float:
     """Row i times the rigid rotation, the vector of ones."""
     total = 0.0
@@ -40,7 +40,7 @@ def row_sum(rows: Rows, i: int) -> float:
     return total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _last_knot(time: Array, first: int, last: int, t: float) -> int:
     """The last knot k in [first, last) with time[k] ≤ t, or first − 1."""
     low, high = first, last
@@ -53,7 +53,7 @@ def _last_knot(time: Array, first: int, last: int, t: float) -> int:
     return low - 1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _linear(time: Array, value: Array, first: int, last: int, t: float) -> float:
     """Linear between knots, constant beyond; of two knots at one time the second counts from there on."""
     k = _last_knot(time, first, last, t)
@@ -64,7 +64,7 @@ def _linear(time: Array, value: Array, first: int, last: int, t: float) -> float
     return value[k] + (value[k + 1] - value[k]) * (t - time[k]) / (time[k + 1] - time[k])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def level_at(level_start: IntArray, level_time: Array, level_value: Array, p: int, t: float) -> float:
     """Level p of `Driven` at time t [s]; p = −1 is one.  A jump is two knots at one time."""
     if p < 0:
@@ -72,7 +72,7 @@ def level_at(level_start: IntArray, level_time: Array, level_value: Array, p: in
     return _linear(level_time, level_value, level_start[p], level_start[p + 1], t)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _swept(time: Array, value: Array, t: float) -> float:
     """Integral of the linear pieces from the first knot to t."""
     last = _last_knot(time, 0, time.size, t)
@@ -84,14 +84,14 @@ def _swept(time: Array, value: Array, t: float) -> float:
     return total + 0.5 * (value[last] + _linear(time, value, 0, time.size, t)) * (t - time[last])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def frame_at(frame_time: Array, frame_value: Array, t: float) -> tuple[float, float]:
     """The frame's speed [rad/s] and its angle φ_f = ∫ speed dt [rad], exactly, zero at t = 0 [s]."""
     speed = _linear(frame_time, frame_value, 0, frame_time.size, t)
     return speed, _swept(frame_time, frame_value, t) - _swept(frame_time, frame_value, 0.0)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def profile_at(driven: Driven, p: int, angle: float) -> tuple[float, float]:
     """Profile p of `Driven` at an angle [rad] and its slope by it; p = −1 is one."""
     if p < 0:
@@ -107,7 +107,7 @@ def profile_at(driven: Driven, p: int, angle: float) -> tuple[float, float]:
     return c[0] + x * (c[1] + x * (c[2] + x * c[3])), slope * per_angle
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def _source(driven: Driven, s: int, t: float, frame_angle: float, q: Array, extra: Array) -> tuple[float, float]:
     """T_s and its slope by r_s·q."""
     level = level_at(driven.level_start, driven.level_time, driven.level_value, driven.level_of[s], t) + extra[s]
@@ -118,21 +118,21 @@ def _source(driven: Driven, s: int, t: float, frame_angle: float, q: Array, extr
     return level * value, level * slope * driven.multiple[s] * driven.feedback[s]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def source_torques(driven: Driven, t: float, frame_angle: float, q: Array, extra: Array, out: Array) -> None:
     """Torques T_s [Nm] (S,) along the rows r_s into ``out``; ``extra`` (S,) is what governors add to the levels."""
     for s in range(out.size):
         out[s] = _source(driven, s, t, frame_angle, q, extra)[0]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def source_slopes(driven: Driven, t: float, frame_angle: float, q: Array, extra: Array, out: Array) -> None:
     """∂T_s/∂(r_s·q) [Nm/rad] (S,) into ``out``: zero but where the part's own motion moves the events."""
     for s in range(out.size):
         out[s] = _source(driven, s, t, frame_angle, q, extra)[1]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def crank_terms(
     driven: Driven, frame_angle: float, frame_speed: float, q: Array, v: Array, constant: Array, inertia: Array
 ) -> None:
@@ -150,7 +150,7 @@ def crank_terms(
         inertia[m] = mass * first * first - driven.crank_included[m]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def governed_torque(governed: Governed, g: int, error: float, integral: float) -> tuple[float, float]:
     """T_g = clip(k_p e + I, low, high) [Nm] and dI/dt = k_i e; I waits while it would push past a limit."""
     wanted = governed.proportional[g] * error + integral
@@ -160,7 +160,7 @@ def governed_torque(governed: Governed, g: int, error: float, integral: float) -
     return min(max(wanted, governed.low[g]), governed.high[g]), growth
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def govern(
     governed: Governed,
     driven: Driven,

@@ -12,11 +12,11 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations, pairwise
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array
+from torsional.numerics.uncounted import inlined, uncounted
 
 PlaceArray = NDArray[np.uint32]
 
@@ -117,7 +117,7 @@ def slot_of(tape: Tape, i: int, j: int) -> int:
     return int(tape.node.size + found[0])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
     """LDLᵀ of ``matrix`` (slots,), which is used up: ``lower`` (couplings,) and ``inverse`` (n,) = 1/D.
 
@@ -135,7 +135,7 @@ def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
     return worst > 0.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@inlined()
 def substitute(tape: Tape, lower: Array, inverse: Array, x: Array) -> None:
     """The solution in place of the right-hand side x (n,), both in the order of elimination."""
     count = lower.size

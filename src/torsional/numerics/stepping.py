@@ -1,0 +1,83 @@
+"""Implicit time stepping of `Equations`: a state, and marches from it that may be cut anywhere.
+
+The loop is compiled, and forces are evaluated by the laws' own kernels.  Energy is booked at every step.  Formulation:
+Acary, Z. Angew. Math. Mech. 96 (2016) 585, of Newmark schemes with one-sided springs; the contacts' own time keeps
+stiff ones from making energy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsional.errors import ModelError
+from torsional.numerics.alpha_method import AlphaMethod
+from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.stepping_march import new_work, run
+from torsional.numerics.stepping_plan import Plan
+from torsional.numerics.stepping_start import begin
+from torsional.numerics.stepping_state import Count, Entry, March, Records, Settings, State, Status
+
+__all__ = ["Count", "Entry", "March", "Settings", "State", "Status", "begin", "march", "produced"]
+
+
+def march(
+    plan: Plan,
+    method: AlphaMethod,
+    step: float,
+    steps: int,
+    state: State,
+    *,
+    stride: int = 1,
+    at: ArrayLike | None = None,
+    settings: Settings | None = None,
+) -> March:
+    """Take ``steps`` steps of ``step`` h [s] from a state, which stays as it is.
+
+    Recorded are the state at the start and after every ``stride`` steps, or after the steps listed in ``at``, rising;
+    0 is the start.  A march in pieces, each from the state that the one before ended with, gives the same bits as one
+    in a single call.  Raises ModelError for a step that is not positive and for steps to record beyond the last.
+    """
+    chosen = np.arange(0, steps + 1, max(stride, 1)) if at is None else np.asarray(at)
+    places = np.ascontiguousarray(chosen, dtype=np.int64)
+    _check(step, steps, places)
+    told = Settings() if settings is None else settings
+    moved, records = state.copied(), _records(plan, places.size)
+    numbers = (method.alpha_m, method.alpha_f, method.beta, method.gamma)
+    typed = told._replace(
+        guard=bool(told.guard),
+        passes=int(told.passes),
+        rungs=int(told.rungs),
+        agreement=float(told.agreement),
+        angle_error=float(told.angle_error),
+        relative_error=float(told.relative_error),
+        production=float(told.production),
+    )
+    status = Status(run(plan, moved, new_work(plan, moved), typed, numbers, float(step), int(steps), places, records))
+    if not np.isfinite(moved.coordinates).all():
+        status = Status.NOT_FINITE
+    elif status == Status.DONE and produced(moved.ledger) > told.production:
+        status = Status.PRODUCES
+    return March(records, moved, status)
+
+
+def produced(ledger: Array) -> float:
+    """What the method has made of its own since it had made least, over the throughput; zero where nothing moved."""
+    rise = float(ledger[Entry.MADE] - ledger[Entry.LOWEST])
+    through = float(ledger[Entry.THROUGHPUT])
+    return rise / through if through > 0.0 else 0.0
+
+
+def _check(step: float, steps: int, places: IntArray) -> None:
+    if not 0.0 < step < np.inf:
+        raise ModelError("the time step must be positive", where="step", found=f"{step:g} s")
+    if steps < 0 or (places.size and (np.diff(places) < 0).any()) or (places.size and places[0] < 0):
+        raise ModelError("steps to record must rise from 0 on", where="at", found=f"{places[:5].tolist()}")
+    if places.size and places[-1] > steps:
+        raise ModelError("a step to record lies beyond the last", where="at", found=str(places[-1]), allowed=str(steps))
+
+
+def _records(plan: Plan, count: int) -> Records:
+    n, connections, laws = plan.tape.node.size, plan.pairs.left.size, plan.laws.of.size
+    widths = (n, n, n, connections, connections, laws, laws, len(Entry))
+    return Records(np.full(count, np.nan), *(np.full((count, width), np.nan) for width in widths))

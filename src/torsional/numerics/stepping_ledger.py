@@ -1,0 +1,161 @@
+"""Where the energy of a time step went.
+
+The angle gained times the mean of the torques at both ends is work, for every torque; their sum is the kinetic energy
+gained but for what the method makes of its own.  A hinge that opens or closes inside a step acts along a part of the
+angle only: what the mean counts beyond that is the method's own too.
+"""
+# mypy: disable-error-code="untyped-decorator"
+
+from __future__ import annotations
+
+import functools
+
+from torsional.numerics.arrays import Array
+from torsional.numerics.callbacks import law_at
+from torsional.numerics.stepping_forces import Bent, Connections
+from torsional.numerics.stepping_plan import Constants, HingeRows, Laws, Masses, Plan
+from torsional.numerics.stepping_state import Entry, State
+from torsional.numerics.stepping_step import Trial, Work, inertial
+from torsional.numerics.uncounted import inlined, uncounted
+
+summed = functools.partial(inlined, fastmath={"reassoc", "contract"})
+
+
+@summed()
+def _nodal(masses: Masses, state: State, trial: Trial, ledger: Array) -> float:
+    """Work of the sources; what the kinetic energy gained beyond the work of all torques, M q̈ in ``trial.left``."""
+    q, v = state.coordinates[0], state.coordinates[1]
+    worked, through, made = 0.0, 0.0, 0.0
+    for i in range(trial.q.size):
+        turned = trial.q[i] - q[i]
+        work = 0.5 * (state.external[i] + trial.external[i]) * turned
+        worked += work
+        through += abs(work)
+        made += (trial.v[i] + v[i]) * masses.diagonal[i] * (trial.v[i] - v[i])
+        made -= (state.inertial[i] + trial.left[i]) * turned
+    for k in range(masses.above.size):
+        i, j, m = masses.above_row[k], masses.above_column[k], masses.above[k]
+        made += m * ((trial.v[i] + v[i]) * (trial.v[j] - v[j]) + (trial.v[j] + v[j]) * (trial.v[i] - v[i]))
+    ledger[Entry.WORKED] += worked
+    ledger[Entry.THROUGHPUT] += through
+    return 0.5 * made
+
+
+@summed()
+def _damped(plan_damping: Array, before: Array, now: Connections, h: float, moving: bool, ledger: Array) -> float:
+    """Loss in dampers, booked; that in hinges closed all along, given back; and the work of what rates count from."""
+    damped, all_of_it = 0.0, 0.0
+    for e in range(now.twist.size):
+        slipped = (now.twist[e] - before[0, e]) * 0.5 * (now.rate[e] + before[1, e])
+        damped += plan_damping[e] * slipped
+        all_of_it += now.damping[e] * slipped
+    struck = all_of_it - damped
+    if moving:
+        for e in range(now.twist.size):
+            rate = 0.5 * (now.rate[e] + before[1, e])
+            dragged = plan_damping[e] * rate * 0.5 * h * (now.offset[e] + before[3, e])
+            damped += dragged
+            ledger[Entry.WORKED] += dragged
+            ledger[Entry.THROUGHPUT] += abs(dragged)
+    ledger[Entry.DAMPED] += damped
+    return struck
+
+
+@uncounted()
+def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledger: Array) -> float:
+    """Loss in hinges of a step in which some open or close; what the method makes of its own there."""
+    made = 0.0
+    for i in range(hinges.of.size):
+        e, side, change = hinges.of[i], hinges.side[i], hinges.change[i]
+        was, closed = state.sense[i] > 0.0, bent.facing[i] * side > 0.0
+        if not was and not closed:
+            continue
+        x0, x1 = side * (state.connection[0, e] - hinges.gap[i]), side * (now.twist[e] - hinges.gap[i])
+        y0 = x0 + bent.contact_time[i] * side * state.connection[1, e]
+        y1 = x1 + bent.contact_time[i] * side * now.rate[e]
+        if was and closed:
+            ledger[Entry.STRUCK] += change * (0.5 * (y0 + y1) * (x1 - x0) - 0.5 * (x1 * x1 - x0 * x0))
+            continue
+        at = x0 + (x1 - x0) * (y0 / (y0 - y1) if y0 != y1 else 0.5)
+        if was:
+            ledger[Entry.STRUCK] += 0.5 * change * (y0 * (at - x0) + x0 * x0)
+            made += 0.5 * change * y0 * (at - x1)
+        else:
+            ledger[Entry.STRUCK] += 0.5 * change * (y1 * (x1 - at) - x1 * x1)
+            made += 0.5 * change * y1 * (x0 - at)
+    return made
+
+
+@uncounted()
+def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, ledger: Array) -> None:
+    """What laws kept and lost; a law with memory keeps k_el z²/2, one without what its torque at rest keeps."""
+    for l in range(laws.of.size):
+        e, torque = laws.of[l], law_at(laws.address[l])
+        values = bent.values[laws.start[l] : laws.stop[l]]
+        turned, mean = now.twist[e] - state.connection[0, e], 0.5 * (bent.torque[l] + state.law[0, l])
+        beside = mean * 0.5 * h * (now.offset[e] + state.connection[3, e])
+        told = torque(values, now.twist[e], 0.0, bent.memory[l], 0.0)
+        kept = 0.5 * (told[0] + state.law[4, l]) * turned
+        if laws.remembers[l]:
+            pressed = 0.5 * bent.memory[l] * state.law[1, l] * (told[1] - state.law[4, l])
+            kept = 0.5 * told[1] * bent.memory[l] ** 2 - state.law[3, l]
+            beside += pressed
+        ledger[Entry.WORKED] += beside
+        ledger[Entry.THROUGHPUT] += abs(beside)
+        ledger[Entry.RUBBED] += mean * turned + beside - kept
+        state.law[0, l], state.law[1, l], state.law[2, l] = bent.torque[l], bent.memory[l], bent.load[l]
+        state.law[3, l] += kept
+        state.law[4, l] = told[1] if laws.remembers[l] else told[0]
+
+
+@uncounted()
+def _stiffened(centrifugal: Array, more: float, twist: Array, before: Array, ledger: Array) -> None:
+    """Work of the rotation that stiffens connections by centrifugal forces, Ω² being ``more`` than before."""
+    for e in range(twist.size):
+        work = 0.5 * centrifugal[e] * more * twist[e] * before[0, e]
+        ledger[Entry.WORKED] += work
+        ledger[Entry.THROUGHPUT] += abs(work)
+
+
+@inlined()
+def book(plan: Plan, state: State, w: Work, h: float) -> None:
+    """Enter a step into the ledger, before the state moves on; the laws' part of the state moves on with it."""
+    trial, ledger = w.trial, state.ledger
+    inertial(plan.masses, trial.acceleration, trial.left)
+    made = _nodal(plan.masses, state, trial, ledger)
+    turned = False
+    for i in range(plan.hinges.of.size):
+        turned |= state.sense[i] * plan.hinges.side[i] != w.bent.facing[i]
+    struck = _damped(plan.constants.damping, state.connection, w.now, h, plan.moving, ledger)
+    if turned:
+        made += _struck(plan.hinges, w.bent, w.now, state, ledger)
+    else:
+        ledger[Entry.STRUCK] += struck
+    if w.bent.torque.size:
+        _rubbed(plan.laws, w.bent, w.now, state, h, ledger)
+    if plan.spinning:
+        more = w.driving.speeds[3] - state.reference[1]
+        _stiffened(plan.constants.centrifugal, more, w.now.twist, state.connection, ledger)
+    ledger[Entry.MADE] += made
+    ledger[Entry.PRODUCED] += max(0.0, made)
+    ledger[Entry.LOWEST] = min(ledger[Entry.LOWEST], ledger[Entry.MADE])
+
+
+@uncounted()
+def stored(constants: Constants, masses: Masses, hinges: HingeRows, state: State) -> None:
+    """Kinetic and strain energy of a state into its ledger."""
+    v, kinetic, strain = state.coordinates[1], 0.0, 0.0
+    for i in range(v.size):
+        kinetic += 0.5 * masses.diagonal[i] * v[i] * v[i]
+    for k in range(masses.above.size):
+        kinetic += masses.above[k] * v[masses.above_row[k]] * v[masses.above_column[k]]
+    for e in range(constants.stiffness.size):
+        stiffness = constants.stiffness[e] + state.reference[1] * constants.centrifugal[e]
+        strain += 0.5 * stiffness * state.connection[0, e] ** 2
+    for i in range(hinges.of.size):
+        if state.sense[i] > 0.0:
+            beyond = state.connection[0, hinges.of[i]] - hinges.gap[i]
+            strain += 0.5 * hinges.change[i] * beyond * beyond
+    for l in range(state.law.shape[1]):
+        strain += state.law[3, l]
+    state.ledger[Entry.KINETIC], state.ledger[Entry.STRAIN] = kinetic, strain
