@@ -15,6 +15,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import ours_transient as ours
 import pytest
 import transient_scipy
 from tests.validation import dmf_lcp
@@ -43,6 +44,28 @@ def error():
 def _right(deviation: float) -> str:
     assert deviation <= WITHIN
     return f"error {deviation:.1e}"
+
+
+OURS = {
+    "torsional, transient": (ours.response, ours.told_of_response),
+    "torsional, the march alone": (ours.march, ours.told_of_march),
+}
+
+
+@pytest.mark.parametrize("contender", OURS)
+def test_t1_ours(contender, timed, declared, error):
+    prepare, told = OURS[contender]
+    if contender == next(iter(OURS)):
+        title = "DMF-LCP-1: 18 discs, 34 one-sided springs, a run-up of one second; a case is the run"
+        declared("T1", title, ours.floor(STEP, SPAN))
+    work = prepare(STEP, SPAN, SAMPLING)
+    timed(work, task="T1", contender=contender, cases=1, rounds=15, note=_right(error(told(work()))))
+
+
+def test_t1_explicit(timed, error):
+    work = ours.explicit(1e-4, SPAN, SAMPLING)
+    note = _right(error(ours.told_of_explicit(work())))
+    timed(work, task="T1", contender="torsional, explicit, tolerance 1e-4", cases=1, rounds=5, note=note)
 
 
 # method, relative and absolute tolerance, right-hand side, rounds
@@ -85,3 +108,18 @@ def test_t1_peers(contender, enter_time, error, tmp_path):
     done = subprocess.run(command, check=True, capture_output=True, cwd=tmp_path, env=os.environ)
     told = json.loads(done.stdout.splitlines()[-1])
     enter_time("T1", contender, told["seconds"], f"{_right(error(told['twist']))}; version {told['version']}")
+
+
+def test_t2_operating_points(enter_time, declared):
+    """Swings must be the same however many processes there are."""
+    count, simulated = len(ours.POINTS), 3.0 * len(ours.POINTS)
+    declared("T2", f"{count} operating points of it, 3 s each; a case is all of them, on the clock")
+    told = {}
+    for processes in (1, 2):
+        clock, seconds, told[processes] = ours.operate_all(processes)
+        note = (
+            f"{seconds:.1f} s CPU, {simulated / seconds:.0f} simulated s a CPU second, {simulated / clock:.0f} a second"
+        )
+        enter_time("T2", f"torsional, {processes} process{'es' * (processes - 1)}", clock, note)
+    np.testing.assert_array_equal(told[1], told[2])
+    assert (told[1] > 1e-3).all()
