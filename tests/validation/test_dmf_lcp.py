@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 from tests.validation import dmf_lcp
 from tests.validation.dmf_lcp import INERTIA, NODES, REFERENCE, RPM, observed
 
+from torsional.numerics.alpha_method import AlphaMethod
+from torsional.numerics.explicit_march import explicit_march
+from torsional.numerics.stepping import Status, begin, march
 from torsional.numerics.stepping_data import Equations, Rows
+from torsional.numerics.stepping_plan import prepare
 
 TABLE = np.array(REFERENCE)
 TIMES, FIGURES = TABLE[:, 0], TABLE[:, 1:]
@@ -33,6 +38,44 @@ def test_the_reference_by_an_explicit_integrator() -> None:
     figures = observed(found.y.T)
     np.testing.assert_allclose(figures[:, :3], FIGURES[:, :3], rtol=0, atol=1e-12)
     np.testing.assert_allclose(figures[:, 3], FIGURES[:, 3], rtol=0, atol=1e-6)
+
+
+def test_the_explicit_march() -> None:
+    """Another integrator on the arrays of the contract, whose sine is made of cubics."""
+    rest, times = np.zeros(NODES), np.append(0.0, TIMES)
+    found = explicit_march(dmf_lcp.equations(), times, rest, rest, tolerance=1e-11)
+    figures = observed(np.hstack([found.angles, found.rates]))[1:]
+    np.testing.assert_allclose(figures[:, :3], FIGURES[:, :3], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(figures[:, 3], FIGURES[:, 3], rtol=0, atol=1e-6)
+
+
+# 1/h [1/s], then what the reference's figures may be off: the relative angle and the primary's of their largest, the
+# shoe's of its largest, the clutch torque's of its largest
+STEPS = [(10_000, 5e-5, 2.5e-5, 2e-3, 8e-5), (160_000, 3e-7, 1.5e-7, 1e-5, 6e-7)]
+
+
+@pytest.mark.parametrize("pace, twist, primary, shoe, clutch", STEPS)
+def test_steps_come_to_the_reference(pace: int, twist: float, primary: float, shoe: float, clutch: float) -> None:
+    figures, span = stepped(pace)
+    error = np.abs(figures[np.round(TIMES * 1000).astype(int)] - FIGURES).max(axis=0) / span
+    assert (error <= [twist, primary, shoe, clutch]).all(), error
+
+
+def test_steps_are_of_second_order() -> None:
+    """Corners included: over four halvings the error of every figure falls as the square of the step, nearly."""
+    finest = stepped(320_000)[0]
+    coarse, fine = (np.abs(stepped(pace)[0] - finest).max(axis=0) for pace in (10_000, 80_000))
+    assert (np.log2(coarse / fine) / 3 > 1.7).all()
+
+
+def stepped(pace: int) -> tuple[np.ndarray, np.ndarray]:
+    """What the reference lists every millisecond of 0.1 s by steps of 1/pace [s], and its largest sizes."""
+    plan = prepare(dmf_lcp.equations())
+    start, count = begin(plan, np.zeros(NODES), np.zeros(NODES)), round(pace * TIMES[-1])
+    found = march(plan, AlphaMethod.chung_hulbert(0.9), 1.0 / pace, count, start, stride=pace // 1000)
+    assert found.status == Status.DONE
+    figures = observed(np.hstack([found.records.q, found.records.v]))
+    return figures, np.abs(figures).max(axis=0)
 
 
 def test_the_jacobian_is_that_of_the_rates() -> None:
