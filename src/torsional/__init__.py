@@ -36,6 +36,8 @@ _HOMES = {
     "solvers.periodic": "Load Variation model_response periodic_response subharmonic_boundary subharmonic_map "
     "varied_response",
     "solvers.run_up": "full_load_response run_up_response",
+    "solvers.transient": "CylinderTorques Governor OrderTorques SpeedProfile State TorqueHistory crank_angle_of "
+    "engine_drive orders_in_time steady_map steady_state swept transient windowed_rms",
     "stamps": "Connection Constraint Mass NormalLoad SpeedSwitch",
     "system": "System assemble",
 }

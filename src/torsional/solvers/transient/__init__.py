@@ -1,1 +1,27 @@
 """Motion in time: a system and what drives it as arrays, stepped."""
+
+from torsional.solvers.transient.cylinders import CylinderTorques
+from torsional.solvers.transient.drives import Governor, OrderTorques, TorqueHistory
+from torsional.solvers.transient.orders import crank_angle_of, orders_in_time, windowed_rms
+from torsional.solvers.transient.run import transient
+from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.steady import steady_state
+from torsional.solvers.transient.sweeps import engine_drive, steady_map, swept
+
+__all__ = [
+    "CylinderTorques",
+    "Governor",
+    "OrderTorques",
+    "SpeedProfile",
+    "State",
+    "TorqueHistory",
+    "crank_angle_of",
+    "engine_drive",
+    "orders_in_time",
+    "steady_map",
+    "steady_state",
+    "swept",
+    "transient",
+    "windowed_rms",
+]

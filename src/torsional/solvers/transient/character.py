@@ -12,6 +12,8 @@ REGULAR = 0.01
 """Largest exponent a period that counts as none; what 300 periods of a quasi-periodic motion leave is below it."""
 THIN = 1.3
 """Largest dimension of stroboscopic points that lie on a closed curve."""
+APART = 30.0
+"""How much better a motion repeats itself after its own period than after fewer."""
 FEWEST = 200
 """Points below which a dimension means nothing."""
 CLOSE, FAR = 0.01, 0.1
@@ -47,7 +49,8 @@ def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple
     """The fewest periods after which stroboscopic ``points`` (periods, states) repeat themselves, or 0, and what is
     left of the difference over the motion's ``size``.
 
-    The last ``longest`` points must all agree with those k before them; a point at rest repeats itself.
+    The last ``longest`` points must all agree with those k before them, and much better than with those of fewer
+    periods before: what still dies away in a spiral is near itself after some turns.
 
     >>> repeats(np.array([[1.0], [2.0]] * 8), 1.0, 4, 1e-9)
     (2, 0.0)
@@ -58,9 +61,9 @@ def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple
             break
         gap = np.sqrt(np.square(points[-longest:] - points[-longest - k : len(points) - k]).sum(axis=1)).max()
         left = float(gap / size) if size > 0 else 0.0
-        best = min(best, left)
-        if left <= tolerance:
+        if left <= tolerance and left <= best / APART:
             return k, left
+        best = min(best, left)
     return 0, best
 
 

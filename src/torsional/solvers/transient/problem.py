@@ -13,6 +13,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping_data import Equations, rows_of
+from torsional.numerics.stepping_plan import Plan, prepare
 from torsional.solvers.transient.acting import Acting, Drive, assembled, row_of
 from torsional.solvers.transient.arrays import connected, masses
 from torsional.solvers.transient.drives import all_acting, held
@@ -78,17 +79,22 @@ class Problem:
         ratio = float(row.sum())
         frame = self.speed.level
         return Equations(
-            count,
-            mass_rows,
-            inertia,
-            connected(system, places),
-            driven,
-            governed,
-            rows_of((row / ratio if ratio else row)[None]),
-            self.reference_time,
-            frame.time,
-            frame.value,
+            coordinates=count,
+            mass_rows=mass_rows,
+            inertia=inertia,
+            connected=connected(system, places),
+            driven=driven,
+            governed=governed,
+            reference=rows_of((row / ratio if ratio else row)[None]),
+            reference_time=self.reference_time,
+            frame_time=frame.time,
+            frame_value=frame.value,
         )
+
+    @cached_property
+    def plan(self) -> Plan:
+        """What all steps share, worked out once."""
+        return prepare(self.equations)
 
     @cached_property
     def base_order(self) -> float:

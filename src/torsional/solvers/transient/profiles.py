@@ -12,6 +12,7 @@ from torsional.numerics.arrays import Array, ComplexArray
 
 PIECES = 256
 """Cubic pieces a period of the highest order: a cosine is met to (2π/256)⁴/384 = 9e-10 of its amplitude."""
+ROUNDING = 1e-13
 
 
 class Profile(NamedTuple):
@@ -23,12 +24,13 @@ class Profile(NamedTuple):
 
     @property
     def mean(self) -> float:
-        """Its mean over a period.
+        """Its mean over a period; zero where nothing but rounding is left.
 
         >>> Profile(np.array([[1.0, 2.0, 0.0, 0.0]]), 1.0).mean
         2.0
         """
-        return float((self.coefficients @ (1.0 / np.arange(1, 5))).mean())
+        found = float((self.coefficients @ (1.0 / np.arange(1, 5))).mean())
+        return found if abs(found) > ROUNDING * float(np.abs(self.coefficients).max()) else 0.0
 
     def at(self, angle: ArrayLike) -> Array:
         """Values at angles [rad]."""

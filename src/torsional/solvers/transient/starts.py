@@ -11,26 +11,33 @@ from torsional.engine import SliderCrank
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.null_space import null_vectors
+from torsional.numerics.stepping_state import State as Standing
 from torsional.solvers.equilibrium import settled
-from torsional.solvers.transient.acting import Acting, Crank, row_of
+from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
 from torsional.solvers.transient.profiles import Profile, through
 from torsional.system import System
 
 STARTS = "rest, equilibrium, vibrating, a State, a result of transient, of harmonic_response or of periodic_response"
 UNBALANCED = 1e-9
+ENDING = ("angle", "speed", "memory", "integral")
 SMALL, HARMONICS, SAMPLES = 1e-6, 40, 720
 
 
 @dataclass(frozen=True, eq=False)
 class State:
     """A moment of a line: ``time`` [s], ``angle`` [rad] and ``speed`` [rad/s] of the coordinates as deviations,
-    ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero)."""
+    ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero), ``reference``
+    rotation that dampers count from [rad/s] (None: the reference node's).  A march leaves besides its own ``standing``
+    and ``step``, from which it goes on to the last bit."""
 
     time: float
     angle: Array
     speed: Array
     memory: Array
     integral: Array
+    reference: float | None = None
+    standing: Standing | None = None
+    step: float = 0.0
 
     @classmethod
     def at_rest(cls, system: System, time: float = 0.0) -> State:
@@ -38,32 +45,40 @@ class State:
         still = np.zeros(len(system.coordinates))
         return cls(time, still, still.copy(), np.zeros(len(system.connections.names)), np.zeros(0))
 
-    def beside(self, other: State, share: float) -> State:
-        """The state that lies a ``share`` of the way to another one, at this one's time."""
-        mine, theirs = ((s.angle, s.speed, s.memory, s.integral) for s in (self, other))
-        return State(self.time, *(a + share * (b - a) for a, b in zip(mine, theirs, strict=True)))
+    def since(self, time: float) -> State:
+        """The same at another time [s]."""
+        return State(time, self.angle, self.speed, self.memory, self.integral, self.reference)
+
+    def moved(self, angle: Array | float, speed: Array | float, memory: Array | float = 0.0) -> State:
+        """The state a little off, at the same time."""
+        return State(
+            self.time, self.angle + angle, self.speed + speed, self.memory + memory, self.integral, self.reference
+        )
 
     @classmethod
     def ending(cls, run: xr.Dataset, system: System) -> State:
-        """The last moment of a run of `transient`; raises ModelError for another system's."""
-        if run.attrs.get("system_hash") != system.hash and run.sizes["coordinate"] != len(system.coordinates):
-            raise ModelError("the run is one of another system", where="start")
-        told = [np.asarray(run[f"end_{name}"].values, dtype=float) for name in ("angle", "speed", "memory", "integral")]
-        return cls(float(run.attrs["end_time"]), *told)
+        """The last moment of a run, of a steady motion its crank angle zero; ModelError for one of another line."""
+        if run.sizes["coordinate"] != len(system.coordinates) or run.end_angle.ndim > 1:
+            remedy = "choose one run of several, of the same line"
+            raise ModelError("the run does not fit the line", where="start", remedy=remedy)
+        angle, speed, memory, integral = (np.asarray(run[f"end_{name}"].values, dtype=float) for name in ENDING)
+        turning = float(run.attrs.get("end_reference", np.nan))
+        reference = turning if np.isfinite(turning) else None
+        return cls(float(run.attrs.get("end_time", 0.0)), angle, speed, memory, integral, reference)
 
 
 def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
     """The state that ``start`` means; raises ModelError for what means none."""
+    if isinstance(start, State):
+        return start
+    if isinstance(start, xr.Dataset):
+        return State.ending(start, system) if "end_angle" in start else periodic_state(start, system, acting, hold)
     if start is None or start == "equilibrium":
         return equilibrated(system, acting, hold, speed)
     if start == "vibrating":
         return vibrating(system, acting, hold, speed)
     if start == "rest":
         return State.at_rest(system)
-    if isinstance(start, State):
-        return start
-    if isinstance(start, xr.Dataset):
-        return State.ending(start, system) if "end_angle" in start else periodic_state(start, system, acting, hold)
     raise ModelError("no start", where="start", found=repr(start)[:60], allowed=STARTS)
 
 
@@ -84,7 +99,8 @@ def mean_angles(system: System, acting: Acting, hold: str) -> Array:
     load = mean_load(acting, len(system.coordinates))
     if not np.abs(load).max(initial=0.0) > 0:
         return np.zeros(len(load))
-    return angles_of(system, _balanced_twists(system, load, hold), hold)
+    size = max((float(np.abs(source.row).max()) * _mean(source) for source in acting.sources), key=abs, default=0.0)
+    return angles_of(system, _balanced_twists(system, load, hold, abs(size)), hold)
 
 
 def vibrating(system: System, acting: Acting, hold: str, speed: float) -> State:
@@ -146,16 +162,21 @@ def mean_load(acting: Acting, coordinates: int) -> Array:
     """Mean torques on the coordinates at the time zero [Nm]."""
     load = np.zeros(coordinates)
     for source in acting.sources:
-        mean = source.profile.mean if source.profile is not None else 1.0
-        load += source.row * mean * (float(source.level.at(0.0)) if source.level is not None else 1.0)
+        load += source.row * _mean(source)
     return load
 
 
-def _balanced_twists(system: System, load: Array, hold: str) -> Array:
-    """Angles of the connections under a load that must be balanced, but for rounding."""
+def _mean(source: Source) -> float:
+    """Mean torque of one source at the time zero [Nm]."""
+    mean = source.profile.mean if source.profile is not None else 1.0
+    return mean * (float(source.level.at(0.0)) if source.level is not None else 1.0)
+
+
+def _balanced_twists(system: System, load: Array, hold: str, size: float) -> Array:
+    """Angles of the connections under a load that must be balanced, but for rounding of torques of some ``size``."""
     free = null_vectors(system.connections.weights[_carrying(system)])
     left = np.abs(load @ free).max(initial=0.0)
-    if left > UNBALANCED * np.abs(load).max():
+    if left > UNBALANCED * max(size, np.abs(load).max()):
         raise ModelError(
             "the mean torques are not in balance, so there is no equilibrium to start from",
             where="start",
@@ -199,7 +220,8 @@ def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str)
     """
     if "angle" not in found or "order" not in found.angle.dims:
         raise ModelError("the dataset holds no motion", where="start", allowed=STARTS)
-    data = found.squeeze()
+    single = [str(dim) for dim, size in found.sizes.items() if size == 1 and dim not in ("order", "node", "element")]
+    data = found.isel(dict.fromkeys(single, 0))
     more = [str(dim) for dim in data.angle.dims if dim not in ("order", "node")]
     if more:
         remedy = f"choose one: data.isel({more[0]}=0)"

@@ -1,0 +1,180 @@
+"""One stretch of a run: from a state over a number of steps to what was recorded, by any of the integrators."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.laws import Jenkins, LuGre
+from torsional.numerics.alpha_method import AlphaMethod
+from torsional.numerics.arrays import Array
+from torsional.numerics.callbacks import address_of
+from torsional.numerics.element_torques import element_torques
+from torsional.numerics.explicit_march import explicit_march
+from torsional.numerics.stepping import Count, Entry, Settings, Status, begin, march
+from torsional.numerics.stepping_state import State as Standing
+from torsional.solvers.transient.problem import Problem
+from torsional.solvers.transient.starts import State
+
+METHODS = ("chung_hulbert", "hht", "bossak", "newmark", "explicit")
+LEDGER = ("kinetic", "strain", "sources", "dampers", "contacts", "friction", "method")
+"""Shares of the energy [J]: what kinetic and strain gain is sources − dampers − contacts − friction + method."""
+_ENTRIES = [Entry.KINETIC, Entry.STRAIN, Entry.WORKED, Entry.DAMPED, Entry.STRUCK, Entry.RUBBED, Entry.MADE]
+COMPLETE = "complete"
+_WORDS = {
+    Status.DONE: COMPLETE,
+    Status.UNSETTLED: "the torques of a step did not come to agree with its motion",
+    Status.INDEFINITE: "a stiffness, a damping or an inertia is negative",
+    Status.NOT_FINITE: "the motion grew beyond all numbers",
+    Status.PRODUCES: "the time step made more than 1 % of the energy of its own",
+}
+RUNGS = 8
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How finely a run is stepped: ``step`` [s], the ``method``, its ``spectral_radius`` ρ∞, the error of an angle
+    [rad] that a step may make (``angle_error``; 0: the step stays), the ``tolerance`` of the explicit integrator."""
+
+    step: float = 1e-4
+    method: str = "chung_hulbert"
+    spectral_radius: float = 0.8
+    angle_error: float = 0.0
+    tolerance: float = 1e-8
+
+    def __post_init__(self) -> None:
+        if not 0 < self.step < np.inf:
+            raise ModelError("the step must be positive", where="step", found=f"{self.step:g} s")
+        if self.method not in METHODS:
+            allowed = ", ".join(METHODS)
+            raise ModelError("unknown method", where="method", found=self.method, allowed=allowed)
+        _ = self.family
+
+    @property
+    def family(self) -> AlphaMethod:
+        """The member of the generalised-α family; that of the explicit integrator is not asked."""
+        if self.method in ("newmark", "explicit"):
+            return AlphaMethod.newmark()
+        found: AlphaMethod = getattr(AlphaMethod, self.method)(self.spectral_radius)
+        return found
+
+    @property
+    def settings(self) -> Settings:
+        """What the compiled march is told."""
+        return Settings(rungs=RUNGS, angle_error=self.angle_error) if self.angle_error > 0 else Settings()
+
+
+class Marched(NamedTuple):
+    """What was recorded: ``time`` (S,) [s]; ``angle``, ``speed``, ``acceleration`` (S, N) of the coordinates;
+    ``torque``, ``memory``, ``load`` (S, E) of the connections; ``energy`` (S, shares) [J] since the start."""
+
+    time: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    torque: Array
+    memory: Array
+    load: Array
+    energy: Array
+    end: State
+    steps: int
+    iterations: int
+    status: str
+
+
+def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, every: int = 1) -> Marched:
+    """Go on from a state for ``steps`` steps and keep ``every`` one of them, the first and the last included."""
+    kept = np.unique(np.append(np.arange(0, steps, every), steps))
+    if accuracy.method == "explicit":
+        return _explicit(problem, state, state.time + accuracy.step * kept, accuracy)
+    plan, own = problem.plan, _standing(problem, state, accuracy.step)
+    told = march(plan, accuracy.family, accuracy.step, steps, own, at=kept, settings=accuracy.settings)
+    records, count = told.records, len(state.memory)
+    memory, load = np.zeros((2, len(kept), count))
+    memory[:, plan.laws.of], load[:, plan.laws.of] = records.memory, records.load
+    end = State(
+        time=float(records.time[-1]),
+        angle=records.q[-1],
+        speed=records.v[-1],
+        memory=memory[-1],
+        integral=told.state.integral,
+        reference=float(told.state.reference[0]),
+        standing=told.state,
+        step=accuracy.step,
+    )
+    return Marched(
+        time=records.time,
+        angle=records.q,
+        speed=records.v,
+        acceleration=records.acceleration,
+        torque=records.torque,
+        memory=memory,
+        load=load,
+        energy=records.ledger[:, _ENTRIES],
+        end=end,
+        steps=told.count(Count.STEPS) - int(own.counts[Count.STEPS]),
+        iterations=told.count(Count.SOLVES) - int(own.counts[Count.SOLVES]),
+        status=_WORDS[told.status],
+    )
+
+
+def _standing(problem: Problem, state: State, step: float) -> Standing:
+    """The state as the compiled march wants it; one that a march has left goes on to the last bit."""
+    if state.standing is None:
+        return begin(
+            problem.plan,
+            state.angle,
+            state.speed,
+            time=state.time,
+            memory=state.memory[problem.plan.laws.of],
+            reference=state.reference,
+            integral=state.integral if state.integral.size else 0.0,
+        )
+    if state.step == step:
+        return state.standing
+    counts = state.standing.counts.copy()
+    counts[Count.BASE_STEPS] = counts[Count.RUNG] = 0
+    return state.standing._replace(counts=counts, begin=np.array([state.time]))
+
+
+def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) -> Marched:
+    """The same by the explicit integrator, which keeps no ledger."""
+    run = explicit_march(
+        problem.equations,
+        times,
+        state.angle,
+        state.speed,
+        tolerance=accuracy.tolerance,
+        bristles=address_of(LuGre.kernel),
+        sliders=address_of(Jenkins.kernel),
+        reference_speed=state.reference,
+        integral=state.integral if state.integral.size else 0.0,
+        memory=state.memory,
+    )
+    torque, load = np.zeros((2, *run.memories.shape))
+    element_torques(problem.equations, times, run.angles, run.rates, run.memories, run.references, torque, load)
+    end = State(
+        time=float(times[-1]),
+        angle=run.angles[-1],
+        speed=run.rates[-1],
+        memory=run.memories[-1],
+        integral=run.integrals[-1],
+        reference=float(run.references[-1]),
+    )
+    return Marched(
+        time=times,
+        angle=run.angles,
+        speed=run.rates,
+        acceleration=run.accelerations,
+        torque=torque,
+        memory=run.memories,
+        load=load,
+        energy=np.full((len(times), len(LEDGER)), np.nan),
+        end=end,
+        steps=run.steps,
+        iterations=0,
+        status=COMPLETE,
+    )

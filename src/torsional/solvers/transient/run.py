@@ -1,0 +1,164 @@
+"""A run in time: what a system does under its drives from a start on."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import xarray as xr
+
+from torsional.errors import ModelError
+from torsional.solvers.transient.marching import COMPLETE, Accuracy, Marched, marched
+from torsional.solvers.transient.presented import joined, kept, presented
+from torsional.solvers.transient.problem import Drives, Levels, Problem
+from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.solvers.transient.starts import State, starting
+from torsional.system import System
+
+Progress = Callable[[float, float, float], None]
+"""Called with the simulated time [s], the end [s] and how many seconds are simulated in one of the clock."""
+
+PIECES = 100
+"""Pieces of a run between which it can be stopped and the step be changed."""
+FEWEST = 200
+"""Steps of the shortest piece."""
+HALVINGS = 6
+
+
+def transient(
+    system: System,
+    drives: Drives,
+    time: float,
+    start: object = None,
+    *,
+    speed: float | SpeedProfile | None = None,
+    hold: str = "",
+    levels: Levels | None = None,
+    reference: str = "",
+    reference_time: float = np.inf,
+    step: float = 1e-4,
+    method: str = "chung_hulbert",
+    spectral_radius: float = 0.8,
+    angle_error: float = 0.0,
+    tolerance: float = 1e-8,
+    output: float = 0.0,
+    keep: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Motion of a ``system`` under ``drives`` over a ``time`` [s], laws, contacts and friction as they are.
+
+    ``drives``: an `Excitation` (its orders keep to the mean rotation) or any of `OrderTorques`, `CylinderTorques`,
+    `TorqueHistory`, `Governor`, or several.  ``start``: "equilibrium" under the mean torques (default), "vibrating"
+    (the linear response), "rest", a `State`, the result of another run, or one motion of `harmonic_response` or
+    `periodic_response`.  ``speed`` [rad/s]: the mean speed or a `SpeedProfile`, default that of the excitation.
+    ``hold``: the node that takes up the mean torque.  ``levels`` {name: (times, values)} that normal loads follow.
+    ``reference``: node whose speed counts for centrifugal forces; with ``reference_time`` [s] the dampers to ground
+    follow it.  ``step`` [s], ``method`` (chung_hulbert, hht, bossak, newmark; "explicit" chooses its steps by
+    ``tolerance``), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
+    makes more of it.  ``output``: interval [s] of the samples (default every step), ``keep``: names of the nodes and
+    elements in the result (default all).  ``progress`` is called now and then.
+
+    Dimensions time, node, element: ``angle`` [rad], the deviation from the mean rotation, ``angular_velocity`` [rad/s],
+    whole, ``acceleration``; ``twist`` and ``torque`` [Nm] of elements, damping and laws included; ``memory`` and
+    ``normal_load`` of friction; ``energy`` [J] by share.  Interrupted from the keyboard it gives what was reached, with
+    a ``status`` that says so.  A step that produces energy is halved; ModelError where that does not help.
+
+    M q̈ + C q̇ + K q + Σ w f(w·q, w·q̇, memory) = u(t, angle); generalised-α steps after Chung and Hulbert (J. Appl.
+    Mech. 60 (1993) 371).
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> from torsional.engine import Excitation
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> one = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 100.0)}))
+    >>> unit = Excitation(("disc",), [0.0], 10.0, [[100.0]])
+    >>> found = transient(one, unit, 0.1 * np.pi, "rest")
+    >>> round(float(found.angle.max()), 4)  # loaded at once, it swings to twice the static angle
+    2.0
+    """
+    if not 0 < time < np.inf:
+        raise ModelError("a run takes some time", where="time", found=f"{time:g} s")
+    given = {"hold": hold, "levels": levels, "reference": reference, "reference_time": reference_time}
+    problem = Problem.of(system, drives, speed, **given)  # type: ignore[arg-type]
+    kept(keep, system.nodes, system.connections.names)
+    state = starting(start, system, problem.acting, hold, problem.start_speed)
+    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), output, progress)
+    told = run.over(state, time)
+    settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
+    return presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
+
+
+@dataclass(eq=False)
+class Run:
+    """Goes on piece by piece, halves the step where it must, and can be stopped between pieces."""
+
+    problem: Problem
+    accuracy: Accuracy
+    output: float = 0.0
+    progress: Progress | None = None
+    notes: dict[str, str] = field(default_factory=dict)
+
+    def over(self, state: State, time: float) -> Marched:
+        """Everything from a state on over a ``time`` [s]."""
+        every = max(round(self.output / self.accuracy.step), 1) if self.output else 1
+        total = max(round(time / self.accuracy.step), 1)
+        length = max(int(np.ceil(total / PIECES)), FEWEST)
+        length += -length % every
+        parts: list[Marched] = []
+        begun, left, status = clock.perf_counter(), total, COMPLETE
+        try:
+            while left > 0:
+                parts.append(self._piece(parts[-1].end if parts else state, min(length, left), every, total))
+                left -= length
+                self._tell(parts[-1].end.time, state.time + time, begun, parts[-1].end.time - state.time)
+        except KeyboardInterrupt:
+            if not parts:
+                raise
+            status = f"interrupted at {parts[-1].end.time:.6g} s"
+        return _together(parts, status)
+
+    def _piece(self, state: State, steps: int, every: int, total: int) -> Marched:
+        """One piece, with halved steps where the method's own production asks for it."""
+        refine = self._refinement
+        for _ in range(HALVINGS):
+            accuracy = replace(self.accuracy, step=self.accuracy.step / refine)
+            told = marched(self.problem, state, steps * refine, accuracy, every * refine)
+            if told.status == COMPLETE:
+                self._refinement = refine
+                return told
+            refine *= 2
+            self.notes["refined"] = (
+                f"step halved to {self.accuracy.step / refine:.3g} s from {state.time:.6g} s on: {told.status}"
+            )
+        raise ModelError(
+            "no step was small enough for a run that can be believed",
+            where=f"time {state.time:.6g} s",
+            found=f"{told.status}, with a step of {accuracy.step:.3g} s",
+            remedy="give stiff stops a contact time (damping), take spectral_radius=0, or a smaller step",
+        )
+
+    _refinement: int = 1
+
+    def _tell(self, reached: float, end: float, begun: float, simulated: float) -> None:
+        if self.progress is not None:
+            self.progress(reached, end, simulated / max(clock.perf_counter() - begun, 1e-9))
+
+
+def _together(parts: Sequence[Marched], status: str) -> Marched:
+    """Pieces as one record."""
+    return Marched(
+        joined([part.time for part in parts]),
+        joined([part.angle for part in parts]),
+        joined([part.speed for part in parts]),
+        joined([part.acceleration for part in parts]),
+        joined([part.torque for part in parts]),
+        joined([part.memory for part in parts]),
+        joined([part.load for part in parts]),
+        joined([part.energy for part in parts]),
+        parts[-1].end,
+        sum(part.steps for part in parts),
+        sum(part.iterations for part in parts),
+        status,
+    )

@@ -1,0 +1,148 @@
+"""A line looked at once a period of its drive: does it repeat itself, and do neighbouring motions stay together?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from torsional.numerics.arrays import Array
+from torsional.solvers.transient.character import Character, dimension, named, repeats
+from torsional.solvers.transient.marching import Accuracy, Marched, marched
+from torsional.solvers.transient.problem import Problem
+from torsional.solvers.transient.starts import State, grounded, tangents
+from torsional.system import System
+
+BLOCK = 32
+"""Periods between two looks at whether a motion repeats itself."""
+VIEWS = 32
+"""Moments of a period at which the size of the motion is measured."""
+NEAR = 1e-6
+"""Distance of the neighbour, over the size of the motion, from which the exponent is measured."""
+PARTING, SKIPPED = 300, 50
+"""Periods over which it is, and those before."""
+MAPPED = 1500
+"""Stroboscopic points for a dimension."""
+FALLING = 0.7
+FURTHER = np.concatenate([-np.geomspace(1e-3, 1.0, 7), np.geomspace(1e-3, 1.0, 7)])
+"""Angles [rad] at which a law that is flat in equilibrium is asked for its slope."""
+
+
+@dataclass(eq=False)
+class Stroboscope:
+    """Periods of one ``problem`` from a state on; every period takes the same whole number of steps."""
+
+    problem: Problem
+    accuracy: Accuracy
+    state: State
+    base_order: float
+    points: Array = field(init=False)
+    size: float = field(init=False, default=0.0)
+
+    def __post_init__(self) -> None:
+        self.points = self.seen(self.state.angle[None], self.state.speed[None])
+
+    @property
+    def period(self) -> float:
+        """Period of the drive [s]."""
+        return 2 * np.pi / (self.base_order * self.problem.start_speed)
+
+    @property
+    def steps(self) -> int:
+        """Steps a period, a multiple of the moments that are looked at."""
+        return VIEWS * int(np.ceil(self.period / self.accuracy.step / VIEWS * (1 - 1e-9)))
+
+    @property
+    def settled(self) -> Accuracy:
+        """The accuracy with a step that fits the period."""
+        return replace(self.accuracy, step=self.period / self.steps)
+
+    @cached_property
+    def _rows(self) -> tuple[Array, Array]:
+        """What turns angles and speeds into states whose squares are energies; rigid rotation is not seen."""
+        system = self.problem.system
+        masses = system.switched(self.problem.start_speed).masses
+        stiffness = _stiffness(system, self.state.angle, self.problem.start_speed)
+        w = np.sqrt(stiffness)[:, None] * system.connections.weights
+        v = np.sqrt(masses.inertia)[:, None] * masses.weights
+        if not grounded(system):
+            v = v - np.outer(v.sum(axis=1), system.M.sum(axis=0) / system.M.sum())
+        return w, v
+
+    def seen(self, angle: Array, speed: Array) -> Array:
+        """States (moments, states) [√J] of angles and speeds (moments, coordinates)."""
+        w, v = self._rows
+        return np.concatenate([angle @ w.T, speed @ v.T], axis=1)
+
+    def run(self, periods: int) -> Marched:
+        """Go on for some periods; the points are kept."""
+        told = marched(self.problem, self.state, periods * self.steps, self.settled, self.steps // VIEWS)
+        views = self.seen(told.angle, told.speed)
+        self.points = np.concatenate([self.points, views[VIEWS::VIEWS]])
+        last = views[-2 * VIEWS :]
+        self.size = float(np.sqrt(np.square(last - last.mean(axis=0)).sum(axis=1)).max())
+        self.state = told.end
+        return told
+
+    def full(self, periods: int) -> Marched:
+        """Go on for some periods with every step in the record."""
+        told = marched(self.problem, self.state, periods * self.steps, self.settled)
+        self.state = told.end
+        return told
+
+    def exponent(self, periods: int = PARTING) -> float:
+        """Largest Lyapunov exponent a period: how neighbouring motions part, the distance set back every period.
+
+        Both begin every period afresh, so that they differ by nothing but the distance.
+        """
+        random = np.random.default_rng(7)
+        own = self.state
+        step_off = random.standard_normal((2, len(own.angle)))
+        apart = np.linalg.norm(self.seen(step_off[:1], step_off[1:]))
+        share = NEAR * self.size / apart
+        other = own.moved(share * step_off[0], share * step_off[1])
+        grown = np.zeros(periods)
+        for i in range(periods):
+            own = marched(self.problem, own.moved(0.0, 0.0), self.steps, self.settled, self.steps).end
+            other = marched(self.problem, other, self.steps, self.settled, self.steps).end
+            angle, speed = other.angle - own.angle, other.speed - own.speed
+            factor = np.linalg.norm(self.seen(angle[None], speed[None])) / (NEAR * self.size)
+            grown[i] = np.log(factor) if factor > 0 else -np.inf
+            back = float(1.0 / factor) if factor > 0 else 0.0
+            other = own.moved(back * angle, back * speed, back * (other.memory - own.memory))
+        return float(grown[min(SKIPPED, periods // 2) :].mean())
+
+    def until_periodic(self, longest: int, most: int, tolerance: float) -> tuple[int, float, bool]:
+        """Periods after which it repeats itself (0: it does not), what is left, and whether that was falling."""
+        left, history = np.inf, [np.inf]
+        while len(self.points) <= most:
+            self.run(min(BLOCK, most + 1 - len(self.points)) if len(self.points) > 1 else BLOCK)
+            count, left = repeats(self.points, self.size, longest, tolerance)
+            if count:
+                return count, left, True
+            history.append(left)
+        half = len(history) // 2
+        return 0, left, bool(left < FALLING * min(history[: half + 1]))
+
+    def character(self, longest: int, most: int, tolerance: float, thorough: bool = True) -> Character:
+        """What the motion is, after at most ``most`` periods; the exponent is asked of one that does not repeat itself,
+        the dimension where the exponent does not decide."""
+        count, left, falling = self.until_periodic(longest, most, tolerance)
+        if count or not thorough or not self.size > 0:
+            return named(count, left, float("nan"), float("nan"), falling)
+        exponent = self.exponent()
+        if abs(exponent) < 0.1 and not falling:
+            self.run(MAPPED)
+            return named(0, left, exponent, dimension(self.points[-MAPPED:]), falling)
+        return named(0, left, exponent, float("nan"), falling)
+
+
+def _stiffness(system: System, angle: Array, speed: float) -> Array:
+    """A stiffness of every connection's own size [Nm/rad]: its slope in equilibrium, or where a law is flat there a
+    mean of its slopes further out."""
+    found = tangents(system, angle, speed)[0].real
+    for i, law in enumerate(system.connections.laws):
+        if law is not None and not found[i] > 0:
+            found[i] = float(np.mean(law.tangent(FURTHER)))
+    return np.maximum(found, 0.0)

@@ -1,0 +1,156 @@
+"""Steady motions in time one after the other, each begun where the last one ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from torsional.engine import Excitation
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.solvers.periodic.machine import checked_engine, common_order
+from torsional.solvers.transient.problem import Drives
+from torsional.solvers.transient.steady import HIGHEST_ORDER, steady_state
+from torsional.system import System, assemble
+
+SCALARS = ("kind", "status", "periods", "exponent")
+PARTS = 2
+"""Orders of a sweep are multiples of the base order over this."""
+
+
+def swept(
+    system: System,
+    drives: Excitation | Callable[[float], Drives],
+    values: ArrayLike,
+    *,
+    directions: Sequence[str] = ("up", "down"),
+    **settings: Any,
+) -> xr.Dataset:
+    """`steady_state` over ``values``, up and then down again, each run begun where the one before it ended.
+
+    ``drives``: an `Excitation` over speeds, whose values are speeds [rad/s], or a function from a value to the drives.
+    Where the ways up and down differ several motions coexist.  ``settings`` are those of `steady_state`.
+    Dimensions (direction, value, order, node or element); ``kind``, ``status``, ``periods``, ``exponent`` (direction,
+    value) and the coordinate ``speed``.  Raises ModelError for values that do not rise.
+
+    >>> from torsional.components import Coupling, Inertia
+    >>> from torsional.laws import Polynomial
+    >>> from torsional.powertrain import Powertrain
+    >>> law = Polynomial((1.0, 0.0, 0.1))
+    >>> duffing = assemble(Powertrain({"disc": Inertia(1.0), "spring": Coupling("ground", "disc", law, damping=0.05)}))
+    >>> drive = Excitation(("disc",), [1], 1.0, [[0.18]])
+    >>> found = swept(duffing, drive, [1.0, 1.1, 1.2, 1.3], step=0.05, tolerance=1e-4)
+    >>> abs(found.twist.sel(order=1, element="spring")).values[:, 2].round(1).tolist()  # bent over: it is late to fall
+    [2.5, 0.4]
+    """
+    grid = np.atleast_1d(np.asarray(values, dtype=float))
+    if (np.diff(grid) <= 0).any():
+        raise ModelError("values of a sweep rise", where="values")
+    if not directions or any(name not in ("up", "down") for name in directions):
+        raise ModelError("unknown direction", where="directions", found=", ".join(directions), allowed="up, down")
+    start: object = settings.pop("start", "vibrating")
+    ways = []
+    for way in directions:
+        points = []
+        for value in grid if way == "up" else grid[::-1]:
+            points.append(_point(system, drives, float(value), start, settings))
+            start = points[-1]
+        found = points if way == "up" else points[::-1]
+        ways.append(xr.concat([_told(point) for point in found], "value", **_JOIN))
+    together = xr.concat(ways, "direction", **_JOIN)
+    return together.assign_coords(direction=list(directions), value=grid).assign_attrs(analysis="sweep in time")
+
+
+_JOIN: dict[str, Any] = {
+    "data_vars": "all",
+    "coords": "different",
+    "compat": "equals",
+    "combine_attrs": "drop_conflicts",
+}
+
+
+def _point(
+    system: System,
+    drives: Excitation | Callable[[float], Drives],
+    value: float,
+    start: object,
+    settings: dict[str, Any],
+) -> xr.Dataset:
+    """One steady motion."""
+    own = {"parts": PARTS, **settings}
+    if isinstance(drives, Excitation):
+        return steady_state(system, drives, speed=value, start=start, **own)
+    return steady_state(system, drives(value), start=start, **own)
+
+
+def _told(point: xr.Dataset) -> xr.Dataset:
+    """A point with what is said of it as variables."""
+    return point.assign({name: ((), point.attrs[name]) for name in SCALARS})
+
+
+def engine_drive(
+    model: Model,
+    speed: float,
+    torque: float,
+    highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+) -> Excitation:
+    """The engine's orders at one ``speed`` [rad/s] and mean ``torque`` [Nm] on the throws of a ``model``, in multiples
+    of the order that its cylinders have in common, or of ``base_order``."""
+    engine = checked_engine(model)
+    base = base_order or common_order(model, speed, torque)
+    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    return engine.excitation(model.landmarks.throws, speed, torque, orders)
+
+
+def steady_map(
+    model: Model,
+    speeds: ArrayLike,
+    torques: ArrayLike,
+    gears: Sequence[str | int] | None = None,
+    *,
+    highest_order: float = HIGHEST_ORDER,
+    base_order: float | None = None,
+    **settings: Any,
+) -> xr.Dataset:
+    """Steady motions in time of a ``model`` over ``gears``, mean engine ``torques`` [Nm] and ``speeds`` [rad/s].
+
+    Along the speeds each run begins where the one before it ended, at the first with the linear response.  Dimensions
+    (gear, torque, speed, order, node or element), beside them ``kind``, ``status`` and ``periods``.
+    Raises ModelError for a model without an engine.
+    """
+    names = [str(gear) for gear in gears] if gears is not None else [model.top_gear]
+    at, loads = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speeds, torques))
+    hold = model.landmarks.load
+    rows = []
+    for name in names:
+        system = assemble(model.powertrain(name or None))
+        own = [_along(model, system, at, float(torque), hold, highest_order, base_order, settings) for torque in loads]
+        rows.append(xr.concat(own, "torque_value", **_JOIN))
+    found = xr.concat(rows, "gear", **_JOIN).rename(value="speed_value")
+    found = found.drop_vars("speed", errors="ignore").rename(speed_value="speed", torque_value="mean_torque")
+    found = found.assign_coords(gear=names, mean_torque=loads, speed=at)
+    return found.assign_attrs(analysis="steady map in time", model=model.name, model_hash=model.hash)
+
+
+def _along(
+    model: Model,
+    system: System,
+    speeds: Array,
+    torque: float,
+    hold: str,
+    highest_order: float,
+    base_order: float | None,
+    settings: dict[str, Any],
+) -> xr.Dataset:
+    """One row of the map."""
+
+    def drive(speed: float) -> Excitation:
+        return engine_drive(model, speed, torque, highest_order, base_order)
+
+    return swept(system, drive, speeds, directions=("up",), hold=hold, **settings).isel(direction=0, drop=True)

@@ -1,0 +1,76 @@
+"""Steady motions in time: periodic, doubled, coexisting, quasi-periodic and chaotic, against figures of others."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from torsional.components import Coupling, Inertia, Shaft
+from torsional.engine import Excitation
+from torsional.errors import ModelError
+from torsional.laws import Hinges, Law, Polynomial
+from torsional.powertrain import Powertrain
+from torsional.solvers.transient import TorqueHistory, steady_state, swept
+from torsional.system import System, assemble
+
+FINE = {"step": 0.005, "spectral_radius": 1.0}
+
+
+def oscillator(law: Law, damping: float) -> System:
+    return assemble(Powertrain({"disc": Inertia(1.0), "spring": Coupling("ground", "disc", law, damping)}))
+
+
+def drive(speed: float, mean: float, amplitude: float) -> Excitation:
+    return Excitation(("disc",), [0, 1], speed, [[mean, amplitude]])
+
+
+# T_m, Ω, periods; mean, A1/2, A1, A3/2 by the exact piecewise solution
+TWO_STAGE = [
+    (1.0, 3.00, 1, 0.9715228, 0.0, 0.1309417, 0.0),
+    (1.0, 2.41, 2, 0.8654713, 0.5336911, 0.2435232, 0.0076506),
+    (1.2, 2.57, 2, 1.0342741, 0.4399869, 0.2102095, 0.0049593),
+]
+
+
+@pytest.mark.parametrize("mean, speed, periods, steady, half, first, third", TWO_STAGE)
+def test_two_stage_oscillator(
+    mean: float, speed: float, periods: int, steady: float, half: float, first: float, third: float
+) -> None:
+    law = Hinges(1.0, (1.0,), (1.0,), (1.0,))
+    found = steady_state(oscillator(law, 0.04), drive(speed, mean, 1.0), tolerance=1e-6, highest_order=4, **FINE)
+    assert found.attrs["periods"] == periods
+    orders = abs(found.twist.sel(element="spring", order=[0.0, 0.5, 1.0, 1.5])).values
+    np.testing.assert_allclose(orders, [steady, half, first, third], atol=1e-4)
+
+
+def test_two_motions_of_a_duffing_oscillator_beside_each_other() -> None:
+    duffing = oscillator(Polynomial((1.0, 0.0, 0.1)), 0.05)
+    given = Excitation(("disc",), [1], 1.0, [[0.18]])
+    found = swept(duffing, given, [1.05, 1.1, 1.15, 1.2, 1.25, 1.3], step=0.03, tolerance=1e-4, highest_order=7)
+    up, down = abs(found.twist.sel(element="spring", order=1.0)).values
+    # folds at 1.11570025 and 1.26960196 rad/s (NLvib example 01)
+    assert (np.abs(up - down) > 0.5).tolist() == [False, False, True, True, True, False]
+    assert up[4] > 2.5 and down[4] < 0.5
+    assert (found.kind.values == "periodic").all()
+
+
+def test_chaos_of_an_oscillator_of_ueda() -> None:
+    """x″ + 0.05 x′ + x³ = 7.5 cos t, largest exponent 0.10 to 0.11 1/s (Ueda, J. Stat. Phys. 20 (1979) 181)."""
+    ueda = oscillator(Polynomial((0.0, 0.0, 1.0)), 0.05)
+    given = Excitation(("disc",), [1], 1.0, [[7.5]])
+    found = steady_state(ueda, given, start="rest", step=0.02, spectral_radius=1.0, most_periods=200)
+    assert found.attrs["kind"] == "chaotic"
+    assert found.attrs["exponent"] / (2 * np.pi) == pytest.approx(0.105, abs=0.012)
+
+
+def test_two_frequencies_never_repeat_themselves() -> None:
+    free = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 1.0)}))
+    given = Excitation(("disc",), [1], 0.5 * (1 + 5**0.5), [[1.0]])
+    found = steady_state(free, given, start="rest", step=0.02, spectral_radius=1.0, most_periods=200)
+    assert found.attrs["kind"] == "quasi-periodic"
+    assert abs(found.attrs["exponent"]) < 1e-4 and found.attrs["dimension"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_what_does_not_repeat_itself_drives_no_steady_motion() -> None:
+    with pytest.raises(ModelError, match="repeats itself"):
+        steady_state(oscillator(Polynomial((1.0,)), 0.1), TorqueHistory("disc", (0.0,), (1.0,)), speed=10.0)
