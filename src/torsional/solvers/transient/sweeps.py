@@ -120,8 +120,9 @@ def steady_map(
 ) -> xr.Dataset:
     """Steady motions in time of a ``model`` over ``gears``, mean engine ``torques`` [Nm] and ``speeds`` [rad/s].
 
-    Along the speeds each run begins where the one before it ended, at the first with the linear response.  Dimensions
-    (gear, torque, speed, order, node or element), beside them ``kind``, ``status`` and ``periods``.
+    Absorbers that have details are taken in detail.  Along the speeds each run begins where the one before it ended,
+    at the first with the linear response.  Dimensions (gear, mean_torque, speed, order, node or element), beside
+    them ``kind``, ``status`` and ``periods``.
     Raises ModelError for a model without an engine.
     """
     names = [str(gear) for gear in gears] if gears is not None else [model.top_gear]
@@ -129,7 +130,7 @@ def steady_map(
     hold = model.landmarks.load
     rows = []
     for name in names:
-        system = assemble(model.powertrain(name or None))
+        system = assemble(model.detailed().powertrain(name or None))
         own = [_along(model, system, at, float(torque), hold, highest_order, base_order, settings) for torque in loads]
         rows.append(xr.concat(own, "torque_value", **_JOIN))
     found = xr.concat(rows, "gear", **_JOIN).rename(value="speed_value")
