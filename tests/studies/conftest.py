@@ -17,6 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 @pytest.fixture(scope="session")
 def trucks() -> Trucks:
     files = ["smf", "dmf", "psva", "dmf_tva", "planetary_dmf", "dmf_pendulum", "dmf_two_stage"]
+    files += ["dmf_arc_spring"]
     return Trucks(*(load_model(EXAMPLES / f"truck_{name}.yaml") for name in files))
 
 

@@ -25,6 +25,7 @@ _THEMES = {
     "coexistence": "B5",
     "idle": "B6",
     "tuned": "D1 D2 D3 D4",
+    "hysteresis": "F3 F4",
     "pendulum": "G1",
 }
 _WHERE = dict(sorted((id, theme) for theme, ids in _THEMES.items() for id in ids.split()))

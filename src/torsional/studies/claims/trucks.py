@@ -18,9 +18,9 @@ from torsional.stamps import GROUND, Mass
 
 @dataclass(frozen=True, eq=False)
 class Trucks:
-    """One truck with seven absorbers: single mass flywheel, dual mass flywheel (of one stage), power split absorber,
+    """One truck with eight absorbers: single mass flywheel, dual mass flywheel (of one stage), power split absorber,
     flange absorber (TVA), planetary dual mass flywheel, dual mass flywheel with centrifugal pendulum, dual mass
-    flywheel of two stages.
+    flywheel of two stages, dual mass flywheel with arc springs in detail.
 
     Landmarks must be set; the parts of an absorber bear the names that `torsional.absorbers` gives them.
     """
@@ -32,6 +32,7 @@ class Trucks:
     planetary: Model
     pendulum: Model
     two_stage: Model
+    arc_spring: Model
 
 
 def mapped(model: Model, change: Callable[[dict[str, Component]], dict[str, Component]]) -> Model:

@@ -1,0 +1,165 @@
+"""Claims about the friction of arc springs (F3, F4): loops under a slow sweep at several rotational speeds."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+from torsional.absorbers import ArcSprings, CoilSpring, GuideFriction, arc_spring_flywheel
+from torsional.model import RPM, Model
+from torsional.numerics.arrays import Array
+from torsional.powertrain import Powertrain
+from torsional.solvers.hysteresis import hysteresis, model_hysteresis
+from torsional.studies.claims.answers import floats, mean_torque, rising
+from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.claims.trucks import Trucks, hinged
+from torsional.system import System, assemble
+
+SPEEDS = np.array([0.0, 2000.0, 4000.0]) * RPM
+LONG_SWEEPS = np.radians([2.0, 5.0, 20.0, 60.0])
+TRUCK_SWEEPS = np.radians([1.0, 2.0, 5.0, 13.0])
+"""Up to just before the truck's end stop."""
+START_SPEEDS = np.array([100.0, 200.0, 300.0]) * RPM
+START_SWEEP = np.radians([10.0])
+DRIVING_SPEEDS = np.array([1000.0, 1400.0, 1800.0]) * RPM
+DRIVING_SWEEPS = np.radians([0.2, 0.5, 1.0])
+PARTLY = 4.0 / (3.0 * np.pi)
+"""Loss factor of a long row of springs on dry ground that slides in part: torque grows with the root of the angle."""
+
+CONDITION = (
+    "3°/s from rest until the loop closes, no inertia; sections are pressed by rotation and by the springs' curvature; "
+    "the truck with arc springs within its stops, ±13° (±60° would measure the stops), and two arc springs of 165° "
+    "with a travel of 70°, as passenger cars have them, with the same friction, at ±60°"
+)
+
+
+@cache
+def long_arcs() -> System:
+    """Two flywheels with two arc springs of 165° each: 72° of travel of their own, 250 Nm at 60°."""
+    radius, arc = 0.115, np.radians(164.0)
+    length = radius * float(arc)
+    spring = CoilSpring(rate=8e3, free_length=length, solid_length=length - radius * float(np.radians(72.0)), mass=0.5)
+    design = ArcSprings(
+        primary_inertia=0.12,
+        secondary_inertia=0.09,
+        channels=2,
+        radius=radius,
+        channel_arc=float(np.radians(165.0)),
+        stop_angle=float(np.radians(70.0)),
+        secondary_clearance=(float(np.radians(1.0)),) * 2,
+        spring=spring,
+        segments=12,
+        friction=GuideFriction(0.09, 0.11, viscous_coefficient=0.02),
+        grease_damping=0.02,
+    )
+    return assemble(Powertrain(arc_spring_flywheel(design).components))
+
+
+def truck_loops(model: Model, speed: Array = SPEEDS, sweep: Array = TRUCK_SWEEPS, centre: float = 0.0) -> xr.Dataset:
+    """Loops of the truck's absorber."""
+    return model_hysteresis(model, speed, sweep, centre=centre)
+
+
+def long_loops(speed: Array = SPEEDS, sweep: Array = LONG_SWEEPS) -> xr.Dataset:
+    """Loops of the flywheel with long arc springs."""
+    return hysteresis(long_arcs(), "primary", "secondary", speed, sweep)
+
+
+def stuck(loops: xr.Dataset) -> bool:
+    """Whether fewer sections slide the faster it turns and the smaller the sweep, and some stick at the top speed."""
+    count = loops.sliding.values
+    fewer, more = bool((np.diff(count, axis=0) <= 0).all()), bool((np.diff(count, axis=1) >= 0).all())
+    return fewer and more and bool(count[-1, 0] < int(loops.rubs.sum()) == count[0, 0])
+
+
+def told(name: str, loops: xr.Dataset) -> dict[str, Figure]:
+    """Figures of loops at the largest sweep over speed, and of what slides over speed and sweep."""
+    largest = loops.isel(sweep=-1)
+    at = f"{name}, ±{np.degrees(loops.sweep.values[-1]):.0f}°, at {_listed(loops.speed.values / RPM)} rpm"
+    figures: dict[str, Figure] = {
+        f"{at}: loss per cycle [J]": floats(largest.loss),
+        f"{at}: stiffness [kNm/rad]": floats(largest.stiffness / 1e3),
+        f"{at}: loss factor [-]": floats(largest.loss_factor),
+    }
+    sweeps = _listed(np.degrees(loops.sweep.values))
+    for speed, row in zip(loops.speed.values, loops.sliding.values, strict=True):
+        at = f"{name}, {speed / RPM:.0f} rpm, ±{sweeps}°: sliding sections of {int(loops.rubs.sum())}"
+        figures[at] = floats(row)
+    return figures
+
+
+def _listed(values: Array) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
+@claim(
+    "F3",
+    "3.1",
+    "Friction and effective stiffness of arc springs grow with speed: the area of the hysteresis loop rises with "
+    "rotational speed, and at high speed sections of the springs stick to their guide.",
+    "loops at 0, 2000 and 4000 rpm at 3°/s: loss per cycle and chord stiffness rise strictly at the largest sweep; the "
+    "number of sliding sections never rises with speed nor falls with the sweep, and some stick at 4000 rpm where all "
+    "slide at standstill",
+)
+def f3(trucks: Trucks) -> Finding:
+    truck, long = truck_loops(trucks.arc_spring), long_loops()
+    good = True
+    for loops in (truck, long):
+        good &= rising(loops.loss.values[:, -1]) and rising(loops.stiffness.values[:, -1]) and stuck(loops)
+    figures = {**told("truck", truck), **told("long arcs", long)}
+    return Finding(good, CONDITION, figures, dataset=long[["loss", "stiffness", "loss_factor", "sliding"]])
+
+
+def driving_angle(model: Model) -> float:
+    """The angle [rad] at which the springs without friction carry the mean torque of comparisons."""
+    law = hinged(model, model.landmarks.springs[0])
+    angle = np.linspace(0.0, max(law.stops), 20_001)
+    return float(np.interp(mean_torque(model), law.torque(angle), angle))
+
+
+@claim(
+    "F4",
+    "3.1",
+    "At start-up, with large angles at low speed, an arc-spring flywheel has much damping and little stiffness; in "
+    "normal driving its losses are small.",
+    "chord stiffness lower, and loss per cycle and loss factor higher, at ±10° about no torque at 100–300 rpm than at "
+    "±0.2° to ±1° about the mean torque at 1000–1800 rpm, for every pair of the two",
+)
+def f4(trucks: Trucks) -> Finding:
+    model = trucks.arc_spring
+    start = truck_loops(model, START_SPEEDS, START_SWEEP)
+    driving = truck_loops(model, DRIVING_SPEEDS, DRIVING_SWEEPS, driving_angle(model))
+    softer = float(start.stiffness.max()) < float(driving.stiffness.min())
+    more = float(start.loss.min()) > float(driving.loss.max())
+    damped = float(start.loss_factor.min()) > float(driving.loss_factor.max())
+    figures: dict[str, Figure] = {
+        "start-up: stiffness [kNm/rad]": floats(start.stiffness / 1e3),
+        "driving: stiffness [kNm/rad]": floats(driving.stiffness / 1e3),
+        "start-up: loss per cycle [J]": floats(start.loss),
+        "driving: loss per cycle [J]": floats(driving.loss),
+        "start-up: loss factor [-]": floats(start.loss_factor),
+        "driving: loss factor [-]": floats(driving.loss_factor),
+        "driving: sliding sections": floats(driving.sliding),
+        "a long row that slides in part: loss factor [-]": float(PARTLY),
+    }
+    about = f"{np.degrees(driving_angle(model)):.3g}° (60 % of the peak torque)"
+    where = (
+        f"start-up ±10° at {_listed(START_SPEEDS / RPM)} rpm; driving ±{_listed(np.degrees(DRIVING_SWEEPS))}° about "
+    )
+    where += f"{about} at {_listed(DRIVING_SPEEDS / RPM)} rpm"
+    reason = "" if softer and more and damped else _reason(softer, more, damped)
+    return Finding(softer and more and damped, f"3°/s, no inertia; {where}", figures, reason)
+
+
+def _reason(softer: bool, more: bool, damped: bool) -> str:
+    held = [text for good, text in ((softer, "softer"), (more, "losing more energy a cycle")) if good]
+    kept = f"at start-up it is {' and '.join(held)}, as claimed" if held else "at start-up it is not softer"
+    if damped:
+        return kept
+    return (
+        f"{kept}; but over the energy stored it loses less than in driving: where the angle is small only the first "
+        "sections slide, and such a row has a loss factor near 4/(3π) whatever its amplitude, while at start-up all "
+        "sections slide under little load from rotation"
+    )
