@@ -173,7 +173,7 @@ def _accelerate(
 ) -> None:
     """M(q) q̈ = torque, with the moving pistons in M and in the torque."""
     d, n = equations.driven, equations.coordinates
-    pistons = d.crank_mass.size
+    pistons = d.crank_rows.start.size - 1
     if pistons == 0:
         out[:] = at.inverse @ torque
         return

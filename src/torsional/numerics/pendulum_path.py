@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import math
 
-import numba
+from torsional.numerics.uncounted import uncounted
 
 Path = tuple[float, float, float, float, float]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def path_at(curvature_radius: float, flattening: float, distance: float, arc: float) -> Path:
     """X, Y [m], X', −Y' [-] and the curvature 1/ρ [1/m] at arc length s [m]; not a number beyond the path's end.
 
@@ -47,7 +47,7 @@ def path_at(curvature_radius: float, flattening: float, distance: float, arc: fl
 Terms = tuple[float, float, float, float]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def pendulum_terms(
     curvature_radius: float, flattening: float, distance: float, arc: float, rate: float, turning: float
 ) -> Terms:
@@ -66,7 +66,7 @@ def pendulum_terms(
     return squared, lever, 2.0 * half_slope * rate * turning + bend * rate * rate, -half_slope * turning * turning
 
 
-@numba.njit(cache=True, error_model="numpy")
+@uncounted()
 def weight_terms(
     curvature_radius: float, flattening: float, distance: float, arc: float, angle: float, gravity: float
 ) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.crank_kinematics import piston_ratios
+from torsional.numerics.pendulum_path import pendulum_terms, weight_terms
 from torsional.numerics.stepping_data import Driven, Governed, Rows
 from torsional.numerics.uncounted import uncounted
 
@@ -139,8 +140,10 @@ def crank_terms(
     """The torque along each crank row r_m, constant_m − inertia_m r_m·q̈: into arrays [Nm] and [kgm²] (cranks,).
 
     constant = −m x'(θ) x''(θ) θ̇²,  inertia = m x'(θ)² − included,  θ = multiple φ_f + r_m·q + phase
+
+    Behind the cranks come three rows a pendulum, see `Driven`.
     """
-    for m in range(constant.size):
+    for m in range(driven.crank_mass.size):
         multiple, mass = driven.crank_multiple[m], driven.crank_mass[m]
         angle = multiple * frame_angle + row_product(driven.crank_rows, m, q) + driven.crank_phase[m]
         rate = multiple * frame_speed + row_product(driven.crank_rows, m, v)
@@ -148,6 +151,35 @@ def crank_terms(
         first, second = _piston(radius, rod, offset, angle)
         constant[m] = -mass * first * second * rate * rate
         inertia[m] = mass * first * first - driven.crank_included[m]
+    if driven.pendulums.size:
+        _pendulums(driven, frame_angle, frame_speed, q, v, constant, inertia)
+
+
+@uncounted()
+def _pendulums(
+    driven: Driven, frame_angle: float, frame_speed: float, q: Array, v: Array, constant: Array, inertia: Array
+) -> None:
+    """Torque and inertia of each pendulum along the rows of θ, s and θ + s, beyond the mass m c² (θ̇ + ṡ/c)².
+
+    δM = m (R² − c²) θ̈² + 2 m (G − c) θ̈ s̈ as squares: a − b on θ, −b on s, b on θ + s.
+    """
+    for p in range(driven.pendulums.shape[0]):
+        mass, distance, radius = driven.pendulums[p, 0], driven.pendulums[p, 1], driven.pendulums[p, 2]
+        flattening, place, multiple, gravity = (
+            driven.pendulums[p, 3],
+            driven.pendulums[p, 4],
+            driven.pendulums[p, 5],
+            driven.pendulums[p, 6],
+        )
+        m = driven.crank_mass.size + 3 * p
+        arc, rate = row_product(driven.crank_rows, m + 1, q), row_product(driven.crank_rows, m + 1, v)
+        turning = multiple * frame_speed + row_product(driven.crank_rows, m, v)
+        angle = multiple * frame_angle + row_product(driven.crank_rows, m, q) + place
+        squared, lever, on_carrier, along = pendulum_terms(radius, flattening, distance, arc, rate, turning)
+        heavy, falls = weight_terms(radius, flattening, distance, arc, angle, gravity)
+        both = mass * (lever - distance)
+        constant[m], constant[m + 1], constant[m + 2] = mass * (heavy - on_carrier), mass * (falls - along), 0.0
+        inertia[m], inertia[m + 1], inertia[m + 2] = mass * (squared - distance * distance) - both, -both, both
 
 
 @uncounted()

@@ -14,6 +14,9 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
 
+PENDULUM = 7
+"""Numbers that describe a pendulum."""
+
 
 class Rows(NamedTuple):
     """Sparse rows over the coordinates: row i has ``weight[start[i]:start[i + 1]]`` at ``column[…]``."""
@@ -84,6 +87,11 @@ class Driven(NamedTuple):
     crank's angle θ = crank_multiple φ_f + r_m·q + ``crank_phase`` (r_m·1 is the multiple), ``crank_mass``,
     ``crank_radius``, ``crank_rod``, ``crank_offset``, less what of it is an inertia already (``crank_included``
     [kgm²]).
+
+    Behind the cranks stand three more of their rows for each of the ``pendulums`` (P, 7): that of its carrier's
+    angle, that of its way s along the path, and their sum.  The table has mass, distance, radius of curvature,
+    flattening (`torsional.numerics.pendulum_path`), place on the carrier from the top, the sum of the carrier's row,
+    gravity; m c² (θ̇ + ṡ/c)² is among the masses.
     """
 
     rows: Rows
@@ -106,6 +114,7 @@ class Driven(NamedTuple):
     crank_rod: Array
     crank_offset: Array
     crank_included: Array
+    pendulums: Array = np.zeros((0, PENDULUM))
 
 
 class Governed(NamedTuple):

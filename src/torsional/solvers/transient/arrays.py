@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -10,11 +11,12 @@ import numpy as np
 from torsional.errors import ModelError, nearest
 from torsional.laws import HingeRows, Law, hinge_rows
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.stepping_data import Connected, Rows, rows_of
+from torsional.numerics.stepping_data import Connected, Driven, Rows, rows_of
 from torsional.stamps import NormalLoad
 from torsional.system import Connections, System
 
 ROUNDING = 1e-12
+GRAVITY = 9.80665
 _NONE = HingeRows(0.0, *(np.zeros(0),) * 4)
 
 
@@ -51,7 +53,7 @@ def connected(system: System, levels: Mapping[str, int] | None = None) -> Connec
         rows=rows_of(c.weights),
         stiffness=c.stiffness + np.array([found.stiffness for found in rows]),
         damping=_copied(c.damping),
-        centrifugal=_copied(c.centrifugal_stiffness),
+        centrifugal=c.centrifugal_stiffness - _swung(system),
         follow=np.where(c.whole_speed, 0.0, whole),
         mean_rate=np.where(c.whole_speed, whole, 0.0),
         hinge_start=_starts([found.gap for found in rows]),
@@ -71,6 +73,44 @@ def connected(system: System, levels: Mapping[str, int] | None = None) -> Connec
         load_of=_integers([j for own in shares for j, _ in own]),
         load_share=np.array([share for own in shares for _, share in own], dtype=float),
     )
+
+
+def with_pendulums(driven: Driven, system: System, gravity: float = GRAVITY) -> Driven:
+    """What drives a system, with the exact motion of its pendulums instead of their centrifugal springs.
+
+    ``gravity`` [m/s²]: zero where the axis stands upright.  Several pendulums on one carrier hang at their places;
+    a single one that stands for all of them has no weight, since theirs is balanced.
+    """
+    c = system.connections
+    hung = [(i, swing) for i, swing in enumerate(c.swings) if swing is not None]
+    if not hung:
+        return driven
+    alone = Counter(swing.carrier for _, swing in hung)
+    rows, table = [], []
+    for i, swing in hung:
+        carrier = system.T[system.node_index(swing.carrier)]
+        way = swing.distance * c.weights[i]
+        weight = gravity if alone[swing.carrier] > 1 else 0.0
+        rows += [carrier, way, carrier + way]
+        path = (swing.curvature_radius, swing.flattening, swing.place)
+        table.append((swing.mass, swing.distance, *path, float(carrier.sum()), weight))
+    cranks = np.vstack([_dense(driven.crank_rows, system.T.shape[1]), *rows])
+    return driven._replace(crank_rows=rows_of(cranks), pendulums=np.array(table))
+
+
+def _swung(system: System) -> Array:
+    """The centrifugal stiffness that the exact motion of pendulums replaces, for the reference node's speed."""
+    c, lift = system.connections, np.zeros_like(system.connections.centrifugal_stiffness)
+    for i, swing in enumerate(c.swings):
+        if swing is not None:
+            lift[i] = swing.centrifugal_stiffness * system.speed_ratio[system.node_index(swing.carrier)] ** 2
+    return lift
+
+
+def _dense(rows: Rows, coordinates: int) -> Array:
+    out = np.zeros((len(rows.start) - 1, coordinates))
+    out[np.repeat(np.arange(len(out)), np.diff(rows.start)), rows.column] = rows.weight
+    return out
 
 
 def with_viscous_losses(system: System, frequency: float) -> System:

@@ -15,7 +15,7 @@ from torsional.numerics.arrays import Array
 from torsional.numerics.stepping_data import Equations, rows_of
 from torsional.numerics.stepping_plan import Plan, prepare
 from torsional.solvers.transient.acting import Acting, Drive, assembled, row_of
-from torsional.solvers.transient.arrays import connected, masses
+from torsional.solvers.transient.arrays import connected, masses, with_pendulums
 from torsional.solvers.transient.drives import all_acting, held
 from torsional.solvers.transient.profiles import Level, level_of
 from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
@@ -83,7 +83,7 @@ class Problem:
             mass_rows=mass_rows,
             inertia=inertia,
             connected=connected(system, places),
-            driven=driven,
+            driven=with_pendulums(driven, system),
             governed=governed,
             reference=rows_of((row / ratio if ratio else row)[None]),
             reference_time=self.reference_time,
