@@ -15,11 +15,13 @@ _HOMES = {
     "cancellation_frequency characteristic condensed dual_mass_flywheel planetary_dual_mass_flywheel "
     "power_split_absorber single_mass_flywheel straight_spring_flywheel tuned_flange_flywheel tuned_secondary_flywheel "
     "with_friction with_pendulum",
+    "components.slip_clutch": "SlipClutch",
     "components": "Coupling Damper DistributedShaft GearPair Inertia PlanetSpin PlanetaryGear Shaft Superposition "
     "Tyre Vehicle",
     "engine": "ChenFlynn CombustionCycle CrankLayout Engine Excitation FullLoad PressureTrace SliderCrank Wiebe",
     "errors": "ModelError TorsionalError",
     "files": "changed expanded load_model",
+    "files.scenario": "load_scenario",
     "laws": "Contacts Coulomb Hinges Jenkins Karnopp Law LuGre Polynomial Stribeck Table contact_time hysteresis_loop",
     "model": "Gear Landmarks Model Operation",
     "powertrain": "Powertrain",
@@ -30,6 +32,7 @@ _HOMES = {
     "solvers.campbell": "campbell",
     "solvers.equilibrium": "OperatingPoint equilibrium linearize",
     "solvers.harmonic": "harmonic_response",
+    "solvers.hysteresis": "hysteresis model_hysteresis",
     "solvers.modal": "damped_modes modal",
     "solvers.map": "response_map",
     "solvers.operating": "operated",
@@ -38,6 +41,8 @@ _HOMES = {
     "solvers.run_up": "full_load_response run_up_response",
     "solvers.transient": "CylinderTorques Governor OrderTorques SpeedProfile State TorqueHistory crank_angle_of "
     "engine_drive orders_in_time steady_map steady_state swept transient windowed_rms",
+    "studies.scenarios.run_up": "run_up",
+    "studies.scenarios.running": "run_scenario",
     "stamps": "Connection Constraint Mass NormalLoad SpeedSwitch",
     "system": "System assemble",
 }

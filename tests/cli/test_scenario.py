@@ -94,7 +94,8 @@ def test_ctrl_c_keeps_what_was_reached(truck: str) -> None:
     long = ["scenario", truck, "idle_pulse", "-s", "duration=300 s", "-s", "step=0.02 ms", "-o", "part.nc"]
     code = "import sys; from torsional.cli import main; sys.exit(main())"
     hook = "import torsional.solvers.transient.run as r; told = r.Run._tell\n"
-    hook += "def tell(self, reached, *rest):\n print('at', reached, file=sys.stderr, flush=True); told(self, reached, *rest)\n"
+    hook += "def tell(self, at, *rest):\n"
+    hook += " if at > 0: print('at', at, file=sys.stderr, flush=True)\n told(self, at, *rest)\n"
     with subprocess.Popen(
         [sys.executable, "-c", f"import sys\n{hook}r.Run._tell = tell\n{code}", *long],
         stdout=subprocess.PIPE,

@@ -37,6 +37,7 @@ def running(task: str, quiet: bool) -> Iterator[Callable[[float, float, float], 
         number = bar.add_task(task, total=None, told="")
 
         def moved(time: float, end: float, speed: float) -> None:
-            bar.update(number, completed=time, total=end, told=f"{time:.2f} of {end:g} s, {speed:.2g} × real time")
+            told = f"{max(time, 0.0):.2f} of {end:g} s, {speed:.2g} × real time"
+            bar.update(number, completed=time, total=end, told=told)
 
         yield moved

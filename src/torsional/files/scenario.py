@@ -14,7 +14,8 @@ from torsional.errors import ModelError, nearest
 from torsional.files.edit import changed, parsed_edit, put
 from torsional.files.faults import translated
 from torsional.files.reader import Tree, read_tree
-from torsional.files.scenario_schema import KINDS, VERSION, Scenario
+from torsional.files.scenario_blocks import VERSION, Scenario
+from torsional.files.scenario_schema import KINDS
 from torsional.model import Model
 from torsional.units import quoted
 

@@ -11,9 +11,11 @@ from torsional.plots.modes import plot_energy_shares, plot_mode_shapes
 from torsional.plots.orders import plot_gears, plot_order_cuts
 from torsional.plots.periodic import plot_periodic
 from torsional.plots.region import plot_region
+from torsional.plots.scenario import plot_scenario
 from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
 from torsional.plots.springs import plot_characteristic, plot_travel
 from torsional.plots.style import panels, save_png, save_svg
+from torsional.plots.transient import plot_transient
 
 __all__ = [
     "panels",
@@ -36,8 +38,10 @@ __all__ = [
     "plot_ratio_map",
     "plot_region",
     "plot_resonance_speeds",
+    "plot_scenario",
     "plot_signals",
     "plot_solutions",
+    "plot_transient",
     "plot_travel",
     "save_png",
     "save_svg",

@@ -10,7 +10,8 @@ import pytest
 from torsional import ModelError, assemble, load_model
 from torsional.components.slip_clutch import SlipClutch
 from torsional.files.scenario import load_scenario
-from torsional.files.scenario_schema import KINDS, Starter
+from torsional.files.scenario_blocks import Starter
+from torsional.files.scenario_schema import KINDS
 from torsional.model import Model
 from torsional.solvers.transient.drives import Governor
 from torsional.solvers.transient.speed_profile import SpeedProfile

@@ -6,16 +6,8 @@ from typing import Any
 
 from torsional.components import Vehicle
 from torsional.errors import ModelError
-from torsional.files.scenario_schema import (
-    ClutchEngagement,
-    GearShift,
-    Scenario,
-    SpeedGovernor,
-    Stall,
-    TipIn,
-    TipOut,
-    TractionLoss,
-)
+from torsional.files.scenario_blocks import Scenario, SpeedGovernor
+from torsional.files.scenario_schema import ClutchEngagement, GearShift, Stall, TipIn, TipOut, TractionLoss
 from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.studies.scenarios import lines

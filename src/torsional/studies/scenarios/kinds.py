@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from torsional.files.scenario import adapted
-from torsional.files.scenario_schema import Scenario
+from torsional.files.scenario_blocks import Scenario
 from torsional.model import Model
 from torsional.studies.scenarios import driving, starting
 from torsional.studies.scenarios.plan import Plan

@@ -8,7 +8,7 @@ from typing import Any
 from torsional.components import Coupling, GearPair, Inertia, Shaft
 from torsional.components.slip_clutch import SlipClutch
 from torsional.errors import ModelError, nearest
-from torsional.files.scenario_schema import ClutchLinings
+from torsional.files.scenario_blocks import ClutchLinings
 from torsional.laws import Coulomb
 from torsional.model import Model
 from torsional.powertrain import Powertrain

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import xarray as xr
 
 from torsional.model import Model
 from torsional.solvers.transient.cylinders import CylinderTorques
-from torsional.solvers.transient.run import Progress, transient
+from torsional.solvers.transient.run import Progress
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.studies.scenarios import lines
 from torsional.studies.scenarios.driving import within_stop
-from torsional.studies.scenarios.running import OUTPUT, STEP, with_figures
-from torsional.system import assemble
+from torsional.studies.scenarios.plan import Plan
+from torsional.studies.scenarios.running import run_plan
 
 
 def run_up(
@@ -33,20 +35,21 @@ def run_up(
     Dataset of `transient` with what `torsional.studies.scenarios.figures.read_off` adds.
     """
     within_stop(model, gear, torque=torque)
-    system = assemble(lines.line_of(model, gear))
-    motor = CylinderTorques.of(model, sum(speed.range) / 2, torque)
-    width = step or STEP
-    run = transient(
-        system,
-        motor,
-        duration,
-        "vibrating",
-        speed=speed,
-        hold=lines.load_of(model),
-        reference=lines.crank_of(model),
-        step=width,
-        output=max(OUTPUT, width),
-        progress=progress,
-    )
     marks = model.landmarks
-    return with_figures(run, system, (*marks.springs, marks.clutch))
+    line = lines.line_of(model, gear)
+    plan = Plan(
+        title="",
+        line=line,
+        drives=(CylinderTorques.of(model, sum(speed.range) / 2, torque),),
+        speed=speed,
+        duration=duration,
+        crank=lines.crank_of(model),
+        springs=tuple(name for name in marks.springs if name in line.components),
+        start="vibrating",
+        hold=lines.load_of(model),
+        watched=tuple(name for name in (marks.clutch,) if name in line.components),
+        step=step,
+        gear=gear,
+        following=math.inf,
+    )
+    return run_plan(plan, progress)

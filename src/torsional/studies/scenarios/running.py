@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import xarray as xr
 
 from torsional.errors import ModelError
-from torsional.files.scenario_schema import Scenario
+from torsional.files.scenario_blocks import Scenario
 from torsional.model import Model
 from torsional.solvers.transient.run import Progress, transient
 from torsional.studies.scenarios.figures import read_off, scheduled
 from torsional.studies.scenarios.kinds import planned
-from torsional.studies.scenarios.plan import FOLLOWING, Plan
+from torsional.studies.scenarios.plan import Plan
 from torsional.system import System, assemble
 
 STEP, OUTPUT = 1e-4, 5e-4
@@ -34,21 +34,22 @@ def run_scenario(scenario: Scenario, model: Model, progress: Progress | None = N
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     """The run of a plan."""
     system = assemble(plan.line)
-    step = plan.step or STEP
+    step, settling = plan.step or STEP, plan.settling
     run = transient(
         system,
         plan.drives,
-        plan.duration,
-        plan.started(system),
+        plan.duration + settling,
+        plan.started(system).since(-settling),
         speed=plan.speed,
         hold=plan.hold,
         levels=plan.levels,
         reference=plan.crank,
-        reference_time=FOLLOWING,
+        reference_time=plan.following,
         step=step,
         output=max(OUTPUT, step),
         progress=progress,
     )
+    run = from_zero(run)
     if plan.step is not None and "refined" in run.attrs:
         told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
         raise ModelError("the step is too large for this line", where="step", **told, remedy="or leave the key out")
@@ -57,6 +58,15 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     told = {key: json.dumps(names) for key, names in listed.items()}
     figures = with_figures(run, system, (*plan.springs, *plan.watched))
     return scheduled(figures, plan.shown).assign_attrs({**named, **told})
+
+
+def from_zero(run: xr.Dataset) -> xr.Dataset:
+    """What happened from the time zero on, energies counted from there; KeyboardInterrupt where it was not reached."""
+    late = run.time.values >= -0.25 * float(run.attrs["step"])
+    if not late.any():
+        raise KeyboardInterrupt
+    kept = run.isel(time=late)
+    return kept.assign(energy=kept.energy - kept.energy.isel(time=0)) if not late.all() else run
 
 
 def with_figures(run: xr.Dataset, system: System, first: Sequence[str]) -> xr.Dataset:

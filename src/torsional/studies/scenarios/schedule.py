@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from torsional.errors import ModelError
-from torsional.files.scenario_schema import SpeedGovernor, Starter
+from torsional.files.scenario_blocks import SpeedGovernor, Starter
 from torsional.model import Model
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.drives import Governor, TorqueHistory

@@ -1,0 +1,64 @@
+"""Pictures of runs in time show the values of their data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from torsional import load_model, load_scenario, plots, run_scenario
+from torsional.plots.transient import envelope
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def run() -> xr.Dataset:
+    shift = ["duration=0.8 s", "clutch.within=0.02 s", "clutch.capacity=6 kNm", "torque_from=0.7 s"]
+    overriding = load_scenario(
+        "gear_shift", [*shift, "from_gear=9", "model.absorber.stop_torque=1500 Nm", "torque=500"]
+    )
+    return run_scenario(overriding, load_model(ROOT / "examples" / "truck_dmf.yaml"))
+
+
+def test_a_scenario_shows_what_was_done_and_what_it_did(run: xr.Dataset) -> None:
+    figure = plots.plot_scenario(run)
+    torques, events, speeds, twists = figure.axes
+    assert [text.get_text() for text in events.texts] == [
+        "clutch capacity, up to 6000 Nm",
+        "mean engine torque, up to 500 Nm",
+    ]
+    assert [line.get_label() for line in speeds.lines] == ["primary", "gearbox input"]
+    drawn = [line for line in twists.lines if line.get_gid() == "signal"]
+    assert np.radians(drawn[0].get_ydata()) == pytest.approx(run.twist.sel(element="dmf").values)
+    assert [line.get_label() for line in torques.lines] == ["dmf", "clutch linings", "clutch capacity"]
+    speed = np.asarray(speeds.lines[1].get_ydata()) * np.pi / 30
+    assert speed == pytest.approx(run.angular_velocity.sel(node="gearbox_input").values)
+
+
+def test_stops_are_lines_and_contacts_are_marked(run: xr.Dataset) -> None:
+    twists = plots.plot_scenario(run).axes[3]
+    stops = sorted(float(line.get_ydata()[0]) for line in twists.lines if line.get_color() == "#b3261e")  # type: ignore[index]
+    # 1500 Nm over 13 kNm/rad
+    assert np.degrees(1500 / 13e3) == pytest.approx(stops[-1])
+    marked = next(line for line in twists.lines if line.get_label() == "on the stop")
+    assert int(run.stop_contacts.sel(element="dmf")) > 0
+    assert np.abs(np.asarray(marked.get_ydata())).min() > np.degrees(1500 / 13e3)
+
+
+def test_a_run_alone(run: xr.Dataset) -> None:
+    figure = plots.plot_transient(run, nodes=["primary", "vehicle"], springs=["dmf"], title="a run")
+    assert [line.get_label() for line in figure.axes[0].lines] == ["primary", "vehicle, as at the engine"]
+    assert figure.axes[0].get_title("left") == "a run"
+
+
+def test_no_peak_is_lost_in_a_long_run() -> None:
+    time = np.linspace(0.0, 1.0, 100_001)
+    values = np.sin(900 * time)
+    values[77_777], values[12_345] = 5.0, -7.0
+    at, thin = envelope(time, values, 2000)
+    assert len(at) <= 2000
+    assert (thin.max(), thin.min()) == (5.0, -7.0)
+    assert (np.diff(at) >= 0).all()
