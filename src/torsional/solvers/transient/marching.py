@@ -121,6 +121,15 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
     )
 
 
+def method_share(told: Marched) -> float:
+    """Energy that the method itself has made (or lost, negative), over all that passed through; nan without ledger."""
+    standing = told.end.standing
+    if standing is None:
+        return float("nan")
+    through = float(standing.ledger[Entry.THROUGHPUT])
+    return float(standing.ledger[Entry.MADE]) / through if through > 0 else 0.0
+
+
 def _standing(problem: Problem, state: State, step: float) -> Standing:
     """The state as the compiled march wants it; one that a march has left goes on to the last bit."""
     if state.standing is None:

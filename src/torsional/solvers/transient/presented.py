@@ -10,7 +10,7 @@ import xarray as xr
 from torsional.errors import ModelError, nearest
 from torsional.numerics.arrays import Array, IntArray
 from torsional.results import Variable, dataset
-from torsional.solvers.transient.marching import LEDGER, Marched
+from torsional.solvers.transient.marching import LEDGER, Marched, method_share
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State
 
@@ -41,6 +41,7 @@ def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: 
         steps=told.steps,
         iterations=told.iterations,
         status=told.status,
+        method_share=method_share(told),
         end_time=told.end.time,
         end_reference=float("nan") if told.end.reference is None else told.end.reference,
         system_hash=system.hash,

@@ -25,6 +25,8 @@ PIECES = 100
 FEWEST = 200
 """Steps of the shortest piece."""
 HALVINGS = 6
+MOST_SAMPLES = 100_000
+"""Samples of a run that does not say how many it wants."""
 
 
 def transient(
@@ -57,13 +59,14 @@ def transient(
     ``reference``: node whose speed counts for centrifugal forces; with ``reference_time`` [s] the dampers to ground
     follow it.  ``step`` [s], ``method`` (chung_hulbert, hht, bossak, newmark; "explicit" chooses its steps by
     ``tolerance``), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
-    makes more of it.  ``output``: interval [s] of the samples (default every step), ``keep``: names of the nodes and
-    elements in the result (default all).  ``progress`` is called now and then.
+    makes more of it.  ``output``: interval [s] of the samples (default every step, up to 100 000 of them), ``keep``:
+    names of the nodes and elements in the result (default all).  ``progress`` is called now and then.
 
     Dimensions time, node, element: ``angle`` [rad], the deviation from the mean rotation, ``angular_velocity`` [rad/s],
     whole, ``acceleration``; ``twist`` and ``torque`` [Nm] of elements, damping and laws included; ``memory`` and
     ``normal_load`` of friction; ``energy`` [J] by share.  Interrupted from the keyboard it gives what was reached, with
-    a ``status`` that says so.  A step that produces energy is halved; ModelError where that does not help.
+    a ``status`` that says so; ``method_share`` in the attributes is what the steps made or lost of the energy that
+    passed through.  A step that produces energy is halved; ModelError where that does not help.
 
     M q̈ + C q̇ + K q + Σ w f(w·q, w·q̇, memory) = u(t, angle); generalised-α steps after Chung and Hulbert (J. Appl.
     Mech. 60 (1993) 371).
@@ -102,8 +105,8 @@ class Run:
 
     def over(self, state: State, time: float) -> Marched:
         """Everything from a state on over a ``time`` [s]."""
-        every = max(round(self.output / self.accuracy.step), 1) if self.output else 1
         total = max(round(time / self.accuracy.step), 1)
+        every = max(round(self.output / self.accuracy.step), 1) if self.output else 1 + total // MOST_SAMPLES
         length = max(int(np.ceil(total / PIECES)), FEWEST)
         length += -length % every
         parts: list[Marched] = []
