@@ -40,7 +40,8 @@ def test_a_scenario_shows_what_was_done_and_what_it_did(run: xr.Dataset) -> None
 
 def test_stops_are_lines_and_contacts_are_marked(run: xr.Dataset) -> None:
     twists = plots.plot_scenario(run).axes[3]
-    stops = sorted(float(line.get_ydata()[0]) for line in twists.lines if line.get_color() == "#b3261e")  # type: ignore[index]
+    dashed = [line for line in twists.lines if line.get_gid() is None and line.get_label() != "on the stop"]
+    stops = sorted(float(np.asarray(line.get_ydata())[0]) for line in dashed)
     # 1500 Nm over 13 kNm/rad
     assert np.degrees(1500 / 13e3) == pytest.approx(stops[-1])
     marked = next(line for line in twists.lines if line.get_label() == "on the stop")
