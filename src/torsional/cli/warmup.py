@@ -23,6 +23,7 @@ from torsional.model import RPM, Model
 from torsional.numerics.callbacks import address_of
 from torsional.powertrain import Powertrain
 from torsional.solvers.campbell import campbell
+from torsional.solvers.hysteresis import hysteresis
 from torsional.solvers.map import HALF_ORDERS, response_map
 from torsional.solvers.periodic import model_response, periodic_response, subharmonic_map
 from torsional.system import assemble
@@ -70,6 +71,7 @@ def steps(model: Model) -> Iterator[Step]:
     yield "periodic", lambda: _periodic(model)
     yield "isolated", lambda: _one_disc(_STAGES, isolated=True)
     yield "smooth", lambda: _one_disc(laws.Polynomial((1.0, 0.0, 0.5)))
+    yield "hysteresis", _slow_sweep
     yield "friction", lambda: _one_disc(_STAGES, laws.Jenkins(0.1, 1.0))
 
 
@@ -95,6 +97,13 @@ def _one_disc(*beside: laws.Law, isolated: bool = False) -> None:
     system = assemble(Powertrain(parts))
     drive = Excitation(("disc",), np.array([0.0, 1.0]), np.array(1.0), np.ones((1, 2), dtype=complex))
     periodic_response(system, drive, (2.0, 2.5), highest_order=3.0, isolated=isolated)
+
+
+def _slow_sweep() -> None:
+    """One loop of a disc on a spring with a washer."""
+    beside: dict[str, Component] = {"disc": Inertia(1.0), "hub": Inertia(1.0)}
+    beside |= {"spring": Coupling("hub", "disc", _STAGES), "washer": Coupling("hub", "disc", laws.Jenkins(0.1, 1.0))}
+    hysteresis(assemble(Powertrain(beside)), "disc", "hub", 0.0, 2.0)
 
 
 def _laws() -> None:

@@ -34,6 +34,8 @@ CLOSED = 1e-4
 """What the torque of two cycles may differ by, over the largest."""
 SAME = 1e-6
 """What torques of all elements may differ by where a cycle begins and ends, over the largest: it then repeats."""
+NOTHING = 1e-5
+"""Share of the largest torque of all loops below which there is none to speak of."""
 MOVES = 0.01
 """Share of the sweep by which a rubbing part without memory must swing to count as sliding."""
 
@@ -210,6 +212,7 @@ def _told(
     torque, drive = element_torque @ c.weights[:, -1], place[0, :, 1, :, -1]
     closed = torque[:, :, 1]
     loss, stiffness = loss_per_cycle(drive, closed), secant_stiffness(drive, closed)
+    relative = loss_factor(loss, stiffness, half_swing(drive))
     every, grid = ("speed", "sweep", "cycle", "sample"), ("speed", "sweep")
     slides = _slides(c, twist[:, :, 1], sweeps)
     return dataset(
@@ -223,7 +226,7 @@ def _told(
             "loss": (grid, loss, "energy"),
             "stiffness": (grid, stiffness, "stiffness"),
             "harmonic_stiffness": (grid, harmonic_stiffness(drive, closed), "stiffness"),
-            "loss_factor": (grid, loss_factor(loss, stiffness, half_swing(drive)), "loss_factor"),
+            "loss_factor": (grid, np.where(_carries(closed), relative, np.nan), "loss_factor"),
             "element_loss": ((*grid, "element"), _element_loss(twist[:, :, 1], element_torque[:, :, 1]), "energy"),
             "slides": ((*grid, "element"), slides.astype(np.int8), "number"),
             "sliding": (grid, slides.sum(axis=-1), "number"),
@@ -243,6 +246,12 @@ def _told(
         held=ends[1],
         **settings,
     )
+
+
+def _carries(torque: Array) -> BoolArray:
+    """Whether loops (…, sample) carry torque at all, and are not within the free play."""
+    largest = np.abs(torque).max(axis=-1)
+    return np.asarray(largest > NOTHING * largest.max())
 
 
 def _element_loss(twist: Array, torque: Array) -> Array:

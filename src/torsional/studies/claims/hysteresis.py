@@ -145,10 +145,9 @@ def f4(trucks: Trucks) -> Finding:
         "a long row that slides in part: loss factor [-]": float(PARTLY),
     }
     about = f"{np.degrees(driving_angle(model)):.3g}° (60 % of the peak torque)"
-    where = (
-        f"start-up ±10° at {_listed(START_SPEEDS / RPM)} rpm; driving ±{_listed(np.degrees(DRIVING_SWEEPS))}° about "
-    )
-    where += f"{about} at {_listed(DRIVING_SPEEDS / RPM)} rpm"
+    sweeps = _listed(np.degrees(DRIVING_SWEEPS))
+    where = f"start-up ±10° at {_listed(START_SPEEDS / RPM)} rpm; driving ±{sweeps}° about {about} at "
+    where += f"{_listed(DRIVING_SPEEDS / RPM)} rpm"
     reason = "" if softer and more and damped else _reason(softer, more, damped)
     return Finding(softer and more and damped, f"3°/s, no inertia; {where}", figures, reason)
 
