@@ -16,6 +16,7 @@ IDS = [
     *(f"B{n}" for n in range(1, 7)),
     *(f"C{n}" for n in range(1, 7)),
     *(f"D{n}" for n in range(1, 5)),
+    *(f"E{n}" for n in range(1, 3)),
     *("F3", "F4"),
     "G1",
 ]

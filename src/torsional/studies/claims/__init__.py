@@ -26,6 +26,7 @@ _THEMES = {
     "idle": "B6",
     "tuned": "D1 D2 D3 D4",
     "hysteresis": "F3 F4",
+    "time_stepping": "E1 E2",
     "pendulum": "G1",
 }
 _WHERE = dict(sorted((id, theme) for theme, ids in _THEMES.items() for id in ids.split()))
