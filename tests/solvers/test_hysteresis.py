@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.integrate import solve_ivp
 
 from torsional.components import Component, Coupling, GearPair, Inertia, Shaft
 from torsional.components.shaft import Damper
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, Jenkins, Law, LuGre
 from torsional.numerics.arrays import Array
+from torsional.numerics.loops import loss_per_cycle, secant_stiffness
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis, on_bench
 from torsional.solvers.hysteresis.parts import parts_of
@@ -164,6 +166,44 @@ def test_what_acts_elsewhere_is_left_out() -> None:
     assert loops[1].torque.values == pytest.approx(loops[0].torque.values, abs=1e-9)
 
 
+# --- integration in time ---
+
+
+@pytest.mark.parametrize(("rate", "half", "stiffness", "viscous"), [(0.3, 0.03, 6e3, 0.02), (0.02, 0.06, 2e3, 0.05)])
+def test_two_shoes_integrated_with_their_inertia(rate: float, half: float, stiffness: float, viscous: float) -> None:
+    """Shoes so light that their inertia hardly counts, by LSODA: at the fast pace they slide, at the slow one they
+    stick and slip, since friction falls from 1.3 to 1 at rates above 0.05 rad/s."""
+    load, inertia, bristles, width = 10.0, 1e-6 if rate < 0.1 else 1e-5, 5e3, 0.05
+    law = LuGre(bristles, 1e-4 * bristles, 1.0, 1.3, width, viscous_damping=viscous)
+    parts: dict[str, Component] = {"a": Inertia(1.0), "b": Inertia(1.0)}
+    for name in ("s1", "s2"):
+        parts |= {name: Inertia(inertia), f"{name}_guide": Coupling("a", name, law, load=NormalLoad(constant=load))}
+    for name, ends in {"k1": ("s1", "a"), "k2": ("s2", "s1"), "k3": ("b", "s2")}.items():
+        parts[name] = Shaft(*ends, stiffness)
+    loop = hysteresis(assemble(Powertrain(parts)), "a", "b", 0.0, half, rate=rate)
+    period = 4 * half / rate
+
+    def angle(time: Array) -> Array:
+        return np.asarray(half * 2 / np.pi * np.arcsin(np.sin(2 * np.pi * time / period)))
+
+    def rates(time: float, state: Array) -> list[float]:
+        turned, pace = float(angle(np.array(time))), rate * np.sign(np.cos(2 * np.pi * time / period))
+        torques = stiffness * np.diff([turned, state[0], state[3], 0.0])
+        found: list[float] = []
+        for i, (_, speed, bent) in enumerate(state.reshape(2, 3)):
+            slide = speed - pace
+            bending = slide - bristles * abs(slide) * bent / (1.0 + 0.3 * np.exp(-((slide / width) ** 2)))
+            friction = load * (bristles * bent + 1e-4 * bristles * bending + viscous * slide)
+            found += [speed, (torques[i + 1] - torques[i] - friction) / inertia, bending]
+        return found
+
+    times = np.linspace(period, 2 * period, 2881)
+    run = solve_ivp(rates, (0, 2 * period), np.zeros(6), "LSODA", times, rtol=1e-7, atol=1e-9, max_step=period / 400)
+    closed, torque = angle(times), stiffness * run.y[3]
+    assert loop.loss.item() == pytest.approx(float(loss_per_cycle(closed, torque)), rel=1e-3)
+    assert loop.stiffness.item() == pytest.approx(float(secant_stiffness(closed, torque)), rel=1e-6)
+
+
 # --- numbers of the method ---
 
 
@@ -211,6 +251,13 @@ def test_slow_sweeps_lose_what_dampers_take() -> None:
     """c φ̇ with a triangle: the torque is ±c times the rate, 4 A c times the rate a cycle."""
     loop = hysteresis(pair(spring=Shaft("b", "a", 1e3, damping=50.0)), "a", "b", 0.0, 0.1, rate=0.2)
     assert loop.loss.item() == pytest.approx(4 * 0.1 * 50.0 * 0.2, rel=1e-2)
+
+
+def test_within_the_free_play_there_is_no_loss_factor() -> None:
+    parts: dict[str, Component] = {"a": Inertia(1.0), "b": Inertia(1.0), "c": Inertia(1.0)}
+    parts |= {"play": Coupling("c", "a", Contacts.lash(0.1, 1e4)), "spring": Shaft("b", "c", 1e4, damping=1.0)}
+    loop = hysteresis(assemble(Powertrain(parts)), "a", "b", 0.0, [0.04, 0.2])
+    assert np.isnan(loop.loss_factor.values[0, 0]) and np.isfinite(loop.loss_factor.values[0, 1])
 
 
 # --- refusals ---

@@ -70,13 +70,14 @@ def loss_factor(loss: ArrayLike, stiffness: ArrayLike, amplitude: ArrayLike) -> 
 
     ``loss`` ΔW [J] a cycle, ``stiffness`` k of the chord [Nm/rad], ``amplitude`` A half the swing [rad].  After Ungar
     and Kerwin (J. Acoust. Soc. Am. 34 (1962) 954), who divide by the energy stored where the cycle turns: for the
-    elliptic loop of k (1 + iη) it is η itself.
+    elliptic loop of k (1 + iη) it is η itself.  Not a number where nothing is stored.
 
     >>> round(float(loss_factor(np.pi * 0.3 * 1000.0 * 0.1**2, 1000.0, 0.1)), 12)
     0.3
     """
     stored = 0.5 * np.asarray(stiffness, dtype=float) * np.square(np.asarray(amplitude, dtype=float))
-    return np.asarray(np.asarray(loss, dtype=float) / (2.0 * np.pi * stored))
+    lost, turning = np.broadcast_arrays(np.asarray(loss, dtype=float), 2.0 * np.pi * stored)
+    return np.divide(lost, turning, out=np.full(lost.shape, np.nan), where=turning != 0)
 
 
 def _closed(values: ArrayLike) -> Array:
