@@ -27,7 +27,6 @@ def hysteresis(
         str,
         typer.Option(
             "--sweep",
-            "-w",
             metavar="ANGLES",
             help="How far it is turned to either side, as 60deg or 5,20,60deg; default: 60°.",
             show_default=False,

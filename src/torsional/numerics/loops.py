@@ -77,7 +77,7 @@ def loss_factor(loss: ArrayLike, stiffness: ArrayLike, amplitude: ArrayLike) -> 
     """
     stored = 0.5 * np.asarray(stiffness, dtype=float) * np.square(np.asarray(amplitude, dtype=float))
     lost, turning = np.broadcast_arrays(np.asarray(loss, dtype=float), 2.0 * np.pi * stored)
-    return np.divide(lost, turning, out=np.full(lost.shape, np.nan), where=turning != 0)
+    return np.asarray(np.divide(lost, turning, out=np.full(lost.shape, np.nan), where=turning != 0))
 
 
 def _closed(values: ArrayLike) -> Array:
@@ -88,4 +88,4 @@ def _closed(values: ArrayLike) -> Array:
 def _over(rise: Array, run: Array) -> Array:
     """Slopes of pieces; a piece along which the angle stands still has none."""
     rise, run = np.broadcast_arrays(rise, run)
-    return np.divide(rise, run, out=np.zeros(rise.shape), where=run != 0)
+    return np.asarray(np.divide(rise, run, out=np.zeros(rise.shape), where=run != 0))
