@@ -90,6 +90,15 @@ def test_t1_scipy(contender, timed, error):
     timed(work, task="T1", contender=contender, cases=1, rounds=rounds, note=note)
 
 
+def test_t1_classical(timed, error):
+    """What a few lines for this one case take: contacts as damped as these are not stiff at such steps."""
+
+    def work():
+        return transient_scipy.classical(STEP, SPAN, SAMPLING)
+
+    timed(work, task="T1", contender="RK4 written for this case", cases=1, rounds=15, note=_right(error(work())))
+
+
 # a script of its own environment, and what it is asked for before the span and the sampling
 PEERS = {
     "Exudyn, generalised-α 1e-4": ("exudyn", [STEP]),

@@ -1,7 +1,8 @@
-"""SciPy at DMF-LCP-1: its adaptive integrators, with a compiled right-hand side and Jacobian, or one in NumPy."""
+"""DMF-LCP-1 by SciPy's adaptive integrators, compiled right-hand side or one in NumPy, and by steps written for it."""
 
 from __future__ import annotations
 
+import numba
 import numpy as np
 from scipy.integrate import solve_ivp
 from tests.validation import dmf_lcp
@@ -49,3 +50,26 @@ def numpy_rates(t: float, y: np.ndarray) -> np.ndarray:
     torque[dmf_lcp.PRIMARY] += mean + dmf_lcp.SWING * np.sin(dmf_lcp.ORDER * turned)
     torque[dmf_lcp.VEHICLE] -= mean
     return np.concatenate([rate, torque / INERTIA])
+
+
+def classical(step: float, span: float, sampling: float) -> np.ndarray:
+    """θ0 − θ1 [rad] by Runge's and Kutta's classical steps, compiled for these equations and nothing else."""
+    found = np.zeros(round(span / sampling) + 1)
+    _classical(step, round(span / step), round(sampling / step), dmf_lcp.RUN_UP.drive, found)
+    return found
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _classical(h, steps, stride, drive, found):
+    y, stage, k = np.zeros(2 * NODES), np.empty(2 * NODES), np.empty((4, 2 * NODES))
+    ahead, share = (0.0, 0.5, 0.5, 1.0), (1.0, 2.0, 2.0, 1.0)
+    for n in range(steps):
+        for s in range(4):
+            for i in range(2 * NODES):
+                stage[i] = y[i] + ahead[s] * h * k[s - 1, i] if s else y[i]
+            dmf_lcp.fill_rates((n + ahead[s]) * h, stage, k[s], drive)
+        for s in range(4):
+            for i in range(2 * NODES):
+                y[i] += h / 6.0 * share[s] * k[s, i]
+        if (n + 1) % stride == 0:
+            found[(n + 1) // stride] = y[0] - y[1]
