@@ -59,6 +59,12 @@ def test_ten_operating_points_of_the_two_stage_truck(rpm: float, torque: float) 
         largest = np.abs(balanced[1:]).max()
         np.testing.assert_allclose(timed[1:] / largest, balanced[1:] / largest, atol=1e-3)
         np.testing.assert_allclose(timed[0], balanced[0], rtol=1e-3)
+        # phases too, of the orders that the two copies of a doubled motion share
+        shared = [
+            point[name].sel(element=element, order=[3.0, 6.0]),
+            found[name].sel(element=element, order=[3.0, 6.0]),
+        ]
+        assert float(abs(shared[0] - shared[1]).max()) < 1e-3 * largest
 
 
 def test_the_difference_falls_with_the_square_of_the_step() -> None:

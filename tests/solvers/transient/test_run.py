@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,6 +18,7 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.operating import operated
 from torsional.solvers.transient import Governor, OrderTorques, SpeedProfile, State, TorqueHistory, transient
 from torsional.solvers.transient.marching import LEDGER
+from torsional.stamps import SpeedSwitch
 from torsional.system import System, assemble
 
 SPEED = 100.0
@@ -174,6 +177,16 @@ def test_a_governor_holds_a_speed_against_a_load() -> None:
     assert float(found.angular_velocity.sel(node="b").min()) < SPEED - 0.5
     assert float(found.angular_velocity.sel(node="b")[-1]) == pytest.approx(SPEED, abs=0.02)
     assert float(found.torque[-1, 0]) == pytest.approx(80.0, rel=0.01)
+
+
+def test_an_inertia_that_would_switch_is_told() -> None:
+    parts = {"a": Inertia(1.0), "b": Inertia(2.0), "s": Shaft("b", "a", 1e3)}
+    system = assemble(Powertrain(parts))
+    switch = SpeedSwitch(3.0, 120.0)
+    system = dataclasses.replace(system, masses=dataclasses.replace(system.masses, switches=(None, switch)))
+    passing = transient(system, (), 0.1, "rest", speed=SpeedProfile.ramp(100.0, 150.0, 0.1), step=1e-3)
+    assert "inertias of b stay" in passing.attrs["switched"]
+    assert "switched" not in transient(system, (), 0.1, "rest", speed=100.0, step=1e-3).attrs
 
 
 # --- being stopped, being refused ---

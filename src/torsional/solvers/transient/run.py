@@ -87,10 +87,20 @@ def transient(
     problem = Problem.of(system, drives, speed, **given)  # type: ignore[arg-type]
     kept(keep, system.nodes, system.connections.names)
     state = starting(start, system, problem.acting, hold, problem.start_speed)
-    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), output, progress)
+    notes = {"switched": words} if (words := _switching(problem)) else {}
+    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), output, progress, notes)
     told = run.over(state, time)
     settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
     return presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
+
+
+def _switching(problem: Problem) -> str:
+    """What is to be said of inertias that switch within the range of mean speeds: in time they do not."""
+    masses, (low, high) = problem.system.masses, problem.speed.range
+    pairs = zip(masses.names, masses.switches, strict=True)
+    names = [name for name, switch in pairs if switch is not None and switch.above(low) != switch.above(high)]
+    kept_at = f"what they are at {problem.start_speed * 30 / np.pi:.5g} rpm"
+    return f"the inertias of {', '.join(names)} stay {kept_at}, though the speed passes their switch" if names else ""
 
 
 @dataclass(eq=False)
