@@ -18,6 +18,7 @@ RPM = math.pi / 30
 Time = Annotated[float, Quantity("time", above=0)]
 Moment = Annotated[float, Quantity("time", least=0)]
 AnyTorque = Annotated[float, Quantity("torque")]
+TorqueOrZero = Annotated[float, Quantity("torque", least=0)]
 SpeedOrZero = Annotated[float, Quantity("speed", least=0)]
 Share = Annotated[float, Quantity("ratio", least=0)]
 

@@ -20,6 +20,7 @@ from torsional.files.scenario_blocks import (
     SpeedOrZero,
     Starter,
     Time,
+    TorqueOrZero,
     usual,
 )
 from torsional.files.schema.fields import Node, Speed, Torque
@@ -123,7 +124,7 @@ class GearShift(Scenario):
     from_gear: GearName = Field("", description="default: the last but one")
     to_gear: GearName = Field("", description="default: the last one")
     speed: Speed = Field(1400 * RPM, description="of the engine, in the old gear")
-    torque: Torque = Field(1000.0, description="mean engine torque after the shift")
+    torque: TorqueOrZero = Field(1000.0, description="mean engine torque after the shift")
     torque_from: Moment = Field(0.6, description="when the engine begins to pull again")
     clutch: ClutchLinings = Field(default_factory=usual(ClutchLinings, within=0.3))
 

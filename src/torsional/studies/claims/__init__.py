@@ -28,6 +28,8 @@ _THEMES = {
     "hysteresis": "F3 F4",
     "time_stepping": "E1 E2",
     "pendulum": "G1",
+    "start_up": "G2",
+    "engagement": "G3",
 }
 _WHERE = dict(sorted((id, theme) for theme, ids in _THEMES.items() for id in ids.split()))
 _ORDER = sorted(_WHERE, key=lambda id: (id[0], int(id[1:])))

@@ -16,7 +16,7 @@ from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.plan import Plan
 from torsional.system import System, assemble
 
-STEP, OUTPUT = 1e-4, 5e-4
+STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
 
