@@ -56,16 +56,22 @@ def march(
     status = Status(run(plan, moved, new_work(plan, moved), typed, numbers, float(step), int(steps), places, records))
     if not np.isfinite(moved.coordinates).all():
         status = Status.NOT_FINITE
-    elif status == Status.DONE and produced(moved.ledger) > told.production:
+    elif status == Status.DONE and produced(moved.ledger, state.ledger) > told.production:
         status = Status.PRODUCES
     return March(records, moved, status)
 
 
-def produced(ledger: Array) -> float:
-    """What the method has made of its own since it had made least, over the throughput; zero where nothing moved."""
-    rise = float(ledger[Entry.MADE] - ledger[Entry.LOWEST])
-    through = float(ledger[Entry.THROUGHPUT])
-    return rise / through if through > 0.0 else 0.0
+def produced(ledger: Array, before: Array | None = None) -> float:
+    """Energy that the method made of its own, since the start or since the ledger ``before``, over the throughput.
+
+    >>> ledger = np.zeros(len(Entry))
+    >>> ledger[Entry.MADE], ledger[Entry.THROUGHPUT] = 2.0, 100.0
+    >>> produced(ledger)
+    0.02
+    """
+    made, through = float(ledger[Entry.MADE]), float(ledger[Entry.THROUGHPUT])
+    lately = made if before is None else made - float(before[Entry.MADE])
+    return max(0.0, made, lately) / through if through > 0.0 else 0.0
 
 
 def _check(step: float, steps: int, places: IntArray) -> None:

@@ -61,6 +61,17 @@ def _damped(plan_damping: Array, before: Array, now: Connections, h: float, movi
     return struck
 
 
+@inlined()
+def _turned(hinges: HingeRows, facing: Array, state: State) -> bool:
+    """Whether some hinge opens or closes in the step, or one is closed by its rate alone, ahead of its spring."""
+    turned = False
+    for i in range(hinges.of.size):
+        beyond = hinges.side[i] * (state.connection[0, hinges.of[i]] - hinges.gap[i])
+        turned |= state.sense[i] * hinges.side[i] != facing[i]
+        turned |= (state.sense[i] > 0.0) & (beyond < 0.0)
+    return turned
+
+
 @uncounted()
 def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledger: Array) -> float:
     """Loss in hinges of a step in which some open or close; what the method makes of its own there."""
@@ -74,14 +85,15 @@ def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledge
         y0 = x0 + bent.contact_time[i] * side * state.connection[1, e]
         y1 = x1 + bent.contact_time[i] * side * now.rate[e]
         if was and closed:
-            ledger[Entry.STRUCK] += change * (0.5 * (y0 + y1) * (x1 - x0) - 0.5 * (x1 * x1 - x0 * x0))
+            kept = 0.5 * (max(0.0, x1) ** 2 - max(0.0, x0) ** 2)
+            ledger[Entry.STRUCK] += change * (0.5 * (y0 + y1) * (x1 - x0) - kept)
             continue
         at = x0 + (x1 - x0) * (y0 / (y0 - y1) if y0 != y1 else 0.5)
         if was:
-            ledger[Entry.STRUCK] += 0.5 * change * (y0 * (at - x0) + x0 * x0)
+            ledger[Entry.STRUCK] += 0.5 * change * (y0 * (at - x0) + max(0.0, x0) ** 2)
             made += 0.5 * change * y0 * (at - x1)
         else:
-            ledger[Entry.STRUCK] += 0.5 * change * (y1 * (x1 - at) - x1 * x1)
+            ledger[Entry.STRUCK] += 0.5 * change * (y1 * (x1 - at) - max(0.0, x1) ** 2)
             made += 0.5 * change * y1 * (x0 - at)
     return made
 
@@ -123,9 +135,7 @@ def book(plan: Plan, state: State, w: Work, h: float) -> None:
     trial, ledger = w.trial, state.ledger
     inertial(plan.masses, trial.acceleration, trial.left)
     made = _nodal(plan.masses, state, trial, ledger)
-    turned = False
-    for i in range(plan.hinges.of.size):
-        turned |= state.sense[i] * plan.hinges.side[i] != w.bent.facing[i]
+    turned = _turned(plan.hinges, w.bent.facing, state)
     struck = _damped(plan.constants.damping, state.connection, w.now, h, plan.moving, ledger)
     if turned:
         made += _struck(plan.hinges, w.bent, w.now, state, ledger)
@@ -138,7 +148,6 @@ def book(plan: Plan, state: State, w: Work, h: float) -> None:
         _stiffened(plan.constants.centrifugal, more, w.now.twist, state.connection, ledger)
     ledger[Entry.MADE] += made
     ledger[Entry.PRODUCED] += max(0.0, made)
-    ledger[Entry.LOWEST] = min(ledger[Entry.LOWEST], ledger[Entry.MADE])
 
 
 @uncounted()
@@ -154,7 +163,7 @@ def stored(constants: Constants, masses: Masses, hinges: HingeRows, state: State
         strain += 0.5 * stiffness * state.connection[0, e] ** 2
     for i in range(hinges.of.size):
         if state.sense[i] > 0.0:
-            beyond = state.connection[0, hinges.of[i]] - hinges.gap[i]
+            beyond = max(0.0, hinges.side[i] * (state.connection[0, hinges.of[i]] - hinges.gap[i]))
             strain += 0.5 * hinges.change[i] * beyond * beyond
     for l in range(state.law.shape[1]):
         strain += state.law[3, l]

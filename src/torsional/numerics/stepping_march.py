@@ -26,7 +26,7 @@ def new_work(plan: Plan, state: State) -> Work:
     n, edges = plan.tape.node.size, plan.tape.column.size
     connections, hinges, laws = plan.pairs.left.size, plan.hinges.of.size, plan.laws.of.size
     sources, governors = plan.outside.driven.multiple.size, state.integral.size
-    cranks = plan.outside.driven.crank_mass.size
+    cranks = plan.outside.driven.crank_rows.start.size - 1
     bent = Bent(
         facing=state.sense * plan.hinges.side,
         contact_time=np.zeros(hinges),

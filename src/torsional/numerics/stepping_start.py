@@ -166,7 +166,7 @@ def _external(plan: Plan, state: State, time: float) -> tuple[Array, Array]:
     governor, integral = np.zeros(state.integral.size), state.integral.copy()
     govern(governed, driven, time, 0.0, frame, v, integral, governor, extra)
     source_torques(driven, time, angle, q, extra, torque)
-    crank, inertia = np.zeros((2, driven.crank_mass.size))
+    crank, inertia = np.zeros((2, driven.crank_rows.start.size - 1))
     crank_terms(driven, angle, frame, q, v, crank, inertia)
     total = torque @ dense(driven.rows, n) + crank @ dense(driven.crank_rows, n)
     if governor.size:

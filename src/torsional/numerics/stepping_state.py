@@ -32,7 +32,6 @@ class Entry(IntEnum):
     MADE = 6  # by the method itself; negative: lost in it
     PRODUCED = 7  # of it only the steps that made some
     THROUGHPUT = 8  # energy at the start, and what all sources gave and took
-    LOWEST = 9  # what the method itself had made where that was least
 
 
 class Count(IntEnum):

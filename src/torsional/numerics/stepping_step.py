@@ -15,7 +15,7 @@ from typing import NamedTuple
 from torsional.numerics.arrays import Array
 from torsional.numerics.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.sparse_factor import Tape, factor, substitute
-from torsional.numerics.stepping_data import Rows
+from torsional.numerics.stepping_data import Driven, Governed, Rows
 from torsional.numerics.stepping_forces import (
     Bent,
     Connections,
@@ -122,8 +122,7 @@ def drive(plan: Plan, state: State, w: Work, t: float, h: float) -> None:
     for g in range(d.integral.size):
         d.integral[g] = state.integral[g]
     if d.governor.size:
-        v = state.coordinates[1]
-        govern(outside.governed, outside.driven, t - h, h, before, v, d.integral, d.governor, d.extra)
+        _govern(outside.governed, outside.driven, d, state.coordinates[1], trial.v, before, t, h)
     source_torques(outside.driven, t, d.speeds[0], trial.q, d.extra, d.torque)
     for i in range(trial.external.size):
         trial.external[i] = 0.0
@@ -143,6 +142,16 @@ def drive(plan: Plan, state: State, w: Work, t: float, h: float) -> None:
         for l in range(d.levels.size):
             place, driven = plan.loads.level[plan.laws.of[l]], outside.driven
             d.levels[l] = level_at(driven.level_start, driven.level_time, driven.level_value, place, t)
+
+
+@uncounted()
+def _govern(
+    governed: Governed, driven: Driven, d: Driving, v: Array, v_end: Array, before: float, t: float, h: float
+) -> None:
+    """Governors at the end t of a step, with the mean of their errors at both ends added up."""
+    govern(governed, driven, t - h, 0.5 * h, before, v, d.integral, d.governor, d.extra)
+    govern(governed, driven, t, 0.5 * h, d.speeds[1], v_end, d.integral, d.governor, d.extra)
+    govern(governed, driven, t, 0.0, d.speeds[1], v_end, d.integral, d.governor, d.extra)
 
 
 @uncounted()
