@@ -60,6 +60,13 @@ def test_beyond_the_stop_is_said(torsional: Run) -> None:
     assert "±18 deg goes beyond the stop of dmf" in told.err and "±10 deg" not in told.err
 
 
+def test_without_a_sweep_it_goes_to_just_before_the_stop(torsional: Run) -> None:
+    told = torsional("hysteresis", SHOES, "--speed", "0rpm", "--json")
+    assert told.code == 0 and "beyond" not in told.err
+    sweep = json.loads(told.out)["result"]["coordinates"]["sweep"]["values"]
+    assert sweep == [pytest.approx(0.95 * np.radians(15.98), rel=1e-3)]
+
+
 def test_a_plain_spring_has_no_loss(torsional: Run, truck: str) -> None:
     told = torsional("hysteresis", truck, "--speed", "0rpm", "--sweep", "5deg", "--rate", "1e-6deg/s", "--json")
     assert told.code == 0, told.err

@@ -26,7 +26,9 @@ from torsional.system import System, assemble
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SPEEDS, SWEEPS = "0,2000,4000 rpm", "60 deg"
+SPEEDS, WIDEST = "0,2000,4000 rpm", np.radians(60.0)
+SHORT = 0.95
+"""How far towards the stop the sweep goes unless told otherwise."""
 SMALL = ("torque", "drive", "loss", "stiffness", "harmonic_stiffness", "loss_factor", "sliding", "cycles", "closure")
 """What a .csv holds; a .netCDF has every node and element as well."""
 
@@ -35,7 +37,8 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
     """Answer the command."""
     machine = request.model
     engaged = inputs.one_gear(machine, gear)
-    speeds, sweeps = listed(speed or SPEEDS, "speed", "--speed"), listed(sweep or SWEEPS, "relative_angle", "--sweep")
+    speeds = listed(speed or SPEEDS, "speed", "--speed")
+    sweeps = listed(sweep, "relative_angle", "--sweep") if sweep else np.array([within_stops(machine)])
     pace = _positive(units.read(rate, "angular_velocity", where="--rate") if rate else RATE, "--rate", rate)
     for value in sweeps:
         _positive(value, "--sweep", sweep)
@@ -93,6 +96,13 @@ def chosen_ends(model: Model, turned: str, held: str) -> tuple[str, str]:
         remedy = "name two nodes by --turned and --held"
         raise ModelError("the model does not say where its absorber begins and ends", where="hysteresis", remedy=remedy)
     return ends
+
+
+def within_stops(model: Model) -> float:
+    """A sweep [rad] to just before the first stop of the absorber's springs, or a wide one where they have none."""
+    parts = [model.components.get(name) for name in model.landmarks.springs]
+    stops = [abs(stop) for part in parts for stop in getattr(getattr(part, "law", None), "stops", ())]
+    return SHORT * min(stops) if stops else float(WIDEST)
 
 
 def warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:
