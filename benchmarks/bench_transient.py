@@ -102,7 +102,8 @@ def test_t1_classical(timed, error):
 # a script of its own environment, and what it is asked for before the span and the sampling
 PEERS = {
     "Exudyn, generalised-α 1e-4": ("exudyn", [STEP]),
-    "CVODE 1e-4": ("sundae", [1e-4, 1e-5]),
+    "CVODE 1e-4": ("sundae", ["compiled", 1e-4, 1e-5]),
+    "CVODE 1e-4, NumPy right-hand side": ("sundae", ["numpy", 1e-4, 1e-5]),
 }
 
 

@@ -1,4 +1,6 @@
-"""CVODE at DMF-LCP-1 through scikit-sundae, in an environment of its own; compiled right-hand side and Jacobian.
+"""CVODE at DMF-LCP-1 through scikit-sundae, in an environment of its own.
+
+Right-hand side and Jacobian are compiled; or the first is in NumPy and the second CVODE's own differences.
 
 Run: .venv-bench-sundae/bin/python benchmarks/peer_sundae.py ; prints what it found and its CPU times as JSON.
 """
@@ -20,6 +22,7 @@ from sksundae.cvode import CVODE
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
+import transient_scipy
 from tests.validation import dmf_lcp
 
 ROUNDS = 5
@@ -36,9 +39,15 @@ def jacobian(t, y, rate, out) -> None:
     dmf_lcp.fill_jacobian(y, out)
 
 
-def run(rtol: float, atol: float, span: float, sampling: float) -> tuple[float, np.ndarray]:
+def numpy_rates(t, y, out) -> None:
+    """ẏ into ``out``, as one writes it first."""
+    out[:] = transient_scipy.numpy_rates(t, y)
+
+
+def run(kind: str, rtol: float, atol: float, span: float, sampling: float) -> tuple[float, np.ndarray]:
     """CPU time [s] of a run, and θ0 − θ1 [rad] at the samples."""
-    solver = CVODE(rates, jacfn=jacobian, rtol=rtol, atol=atol, method="BDF", max_num_steps=10**6)
+    given = {"rhsfn": rates, "jacfn": jacobian} if kind == "compiled" else {"rhsfn": numpy_rates}
+    solver = CVODE(**given, rtol=rtol, atol=atol, method="BDF", max_num_steps=10**6)
     times = np.linspace(0.0, span, round(span / sampling) + 1)
     start = time.process_time()
     found = solver.solve(times, np.zeros(2 * dmf_lcp.NODES))
@@ -48,7 +57,8 @@ def run(rtol: float, atol: float, span: float, sampling: float) -> tuple[float, 
 
 def main() -> None:
     """One round compiles and warms up, the others are timed."""
-    rounds = [run(*(float(text) for text in sys.argv[1:])) for _ in range(ROUNDS + 1)][1:]
+    kind, *numbers = sys.argv[1:]
+    rounds = [run(kind, *(float(text) for text in numbers)) for _ in range(ROUNDS + 1)][1:]
     seconds = float(np.median([each for each, _ in rounds]))
     print(json.dumps({"version": version("scikit-sundae"), "seconds": seconds, "twist": rounds[-1][1].tolist()}))
 
