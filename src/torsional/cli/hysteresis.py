@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.hysteresis import CLOSED, RATE, absorber_ends, hysteresis
+from torsional.solvers.hysteresis import CLOSED, RATE, absorber_ends, hysteresis, on_bench
 from torsional.system import System, assemble
 
 if TYPE_CHECKING:
@@ -38,13 +38,13 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
     machine = request.model
     engaged = inputs.one_gear(machine, gear)
     speeds = listed(speed or SPEEDS, "speed", "--speed")
-    sweeps = listed(sweep, "relative_angle", "--sweep") if sweep else np.array([within_stops(machine)])
     pace = _positive(units.read(rate, "angular_velocity", where="--rate") if rate else RATE, "--rate", rate)
-    for value in sweeps:
-        _positive(value, "--sweep", sweep)
     centre = units.read(about, "relative_angle", where="--about") if about else 0.0
     ends = chosen_ends(machine, turned, held)
     system = assemble(machine.detailed().powertrain(engaged or None))
+    own = f"{within_stops(system, ends, machine.landmarks.springs)} rad"
+    sweeps = listed(sweep or own, "relative_angle", "--sweep")
+    _positive(float(sweeps.min()), "--sweep", sweep)
     with progress("loops", request.quiet or request.as_json) as moved:
         data = hysteresis(system, *ends, speeds, sweeps, rate=pace, centre=centre, progress=moved)
     data = data.assign_attrs(model=machine.name, hash=machine.hash)
@@ -98,11 +98,14 @@ def chosen_ends(model: Model, turned: str, held: str) -> tuple[str, str]:
     return ends
 
 
-def within_stops(model: Model) -> float:
+def within_stops(system: System, ends: tuple[str, str], springs: Sequence[str]) -> float:
     """A sweep [rad] to just before the first stop of the absorber's springs, or a wide one where they have none."""
-    parts = [model.components.get(name) for name in model.landmarks.springs]
-    stops = [abs(stop) for part in parts for stop in getattr(getattr(part, "law", None), "stops", ())]
-    return SHORT * min(stops) if stops else float(WIDEST)
+    c = on_bench(system, *ends).system.connections
+    ways: list[float] = []
+    for name, law, row in zip(c.names, c.laws, c.weights, strict=True):
+        lever = abs(float(row[-1])) if not row[:-1].any() else 1.0  # gears may twist it by more or less than the sweep
+        ways += [abs(stop) / lever for stop in getattr(law, "stops", ()) if name in springs and lever]
+    return SHORT * min(ways) if ways else float(WIDEST)
 
 
 def warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:

@@ -28,7 +28,7 @@ def hysteresis(
         typer.Option(
             "--sweep",
             metavar="ANGLES",
-            help="How far it is turned to either side, as 60deg or 5,20,60deg; default: to just before the stop, else 60°.",
+            help="How far it is turned to either side, as 60deg or 5,20,60deg; default: up to the stop, or 60°.",
             show_default=False,
         ),
     ] = "",
