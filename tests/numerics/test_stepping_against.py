@@ -148,3 +148,54 @@ def test_a_hinge_that_softens_and_one_that_opens_under_preload() -> None:
         errors.append(np.abs(found.records.q - exact).max() / np.abs(exact).max())
     assert errors[-1] <= 1e-5
     assert order_of(np.array(errors)) >= 1.9
+
+
+# --- what is hard on the passes ---
+
+
+def crowded(n: int) -> Equations:
+    """Masses from a gram to a kilogram in a row, with stops between them and to both sides: contacts that are
+    redundant, stiffnesses from 1e4 to 1e7."""
+    links = [Link([1.0] + [0.0] * (n - 1), 10.0)]
+    for row in np.eye(n)[1:] - np.eye(n)[:-1]:
+        stops = [wall(0.002, 1e6), wall(0.002, 1e4, side=-1.0), wall(0.01, 1e7, 1e-5, side=-1.0)]
+        links.append(Link(row.tolist(), damping=0.01, hinges=stops))
+    links += [Link(row.tolist(), hinges=[wall(0.02, 1e5), wall(0.02, 1e5, side=-1.0)]) for row in np.eye(n)]
+    return equations(np.geomspace(1e-3, 1.0, n).tolist(), links)
+
+
+@pytest.mark.parametrize("n", [4, 12])
+def test_steps_far_too_long_end_all_the_same(n: int) -> None:
+    """The set of closed hinges goes round in circles for some: turning them one by one ends it."""
+    of, draw, fallbacks = crowded(n), np.random.default_rng(1), 0
+    plan, c = prepare(of), of.connected
+    w = dense(c.rows, n)
+    hinge = np.repeat(np.arange(len(w)), np.diff(c.hinge_start))
+    for _ in range(100):
+        state = begin(plan, draw.normal(size=n) * 0.03, draw.normal(size=n) * 30.0)
+        found = march(plan, MEMBERS["chung_hulbert_0.8"], 0.1, 5, state, settings=Settings(guard=False))
+        assert found.status in (Status.DONE, Status.PRODUCES)
+        fallbacks += found.count(Count.FALLBACKS)
+        twist, rate = w @ found.records.q[-1], w @ found.records.v[-1]
+        beyond = c.side * (twist[hinge] - c.gap + c.contact_time * rate[hinge])
+        wanted = c.stiffness * twist + c.damping * rate
+        np.add.at(wanted, hinge, c.side * c.change * np.maximum(0.0, beyond))
+        rounding = 1e-7 * np.abs(wanted).max()  # that of a matrix whose entries span ten decades
+        np.testing.assert_allclose(found.records.torque[-1], wanted, rtol=0.0, atol=rounding)
+    assert fallbacks > 0
+
+
+def test_too_few_passes_for_friction_are_told() -> None:
+    plan = prepare(with_law(BRISTLES))
+    state = begin(plan, 0.0, 0.0)
+    assert march(plan, MEMBERS["newmark"], 1e-2, 100, state, settings=Settings(passes=1)).status == Status.UNSETTLED
+    assert march(plan, MEMBERS["newmark"], 1e-2, 100, state).status == Status.DONE
+
+
+def test_a_coordinate_without_mass_follows_the_balance() -> None:
+    """Two springs in a row with nothing between them are one of half the stiffness."""
+    of = equations([1.0, 0.0], [Link([1.0, -1.0], 200.0), Link([0.0, 1.0], 200.0)])
+    plan = prepare(of)
+    found = march(plan, AlphaMethod.chung_hulbert(0.8), 1e-4, 10_000, begin(plan, [0.1, 0.05], [0.0, 0.0]))
+    np.testing.assert_allclose(found.records.q[:, 0], 0.1 * np.cos(10.0 * found.records.time), atol=1e-6)
+    np.testing.assert_allclose(found.records.q[:, 1], 0.5 * found.records.q[:, 0], atol=1e-9)
