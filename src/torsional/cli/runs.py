@@ -100,9 +100,10 @@ def hand_over(answer: Answer, request: Request, status: str) -> None:
 
 
 def warn_refined(run: xr.Dataset) -> None:
-    """Say where the step had to be halved, and where an engine that should run on was stalled."""
-    if "refined" in run.attrs:
-        complain(str(run.attrs["refined"]), kind="warning")
+    """Say what the steps did to the run, and where an engine that should run on was stalled."""
+    for told in ("refined", "guarded", "energy_error"):
+        if told in run.attrs:
+            complain(str(run.attrs[told]), kind="warning")
     if run.attrs.get("scenario") in RUNNING:
         turning = run.angular_velocity.sel(node=run.attrs["crank"])
         if float(turning.min()) <= 0:

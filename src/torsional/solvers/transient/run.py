@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
+from torsional.numerics.arrays import Array
+from torsional.solvers.transient.honesty import honest
 from torsional.solvers.transient.marching import COMPLETE, Accuracy, Marched, marched
 from torsional.solvers.transient.presented import joined, kept, presented
 from torsional.solvers.transient.problem import Drives, Levels, Problem
@@ -22,7 +27,7 @@ Progress = Callable[[float, float, float], None]
 
 PIECES = 100
 """Pieces of a run between which it can be stopped and the step be changed."""
-FEWEST = 200
+FEWEST = 1000
 """Steps of the shortest piece."""
 HALVINGS = 6
 MOST_SAMPLES = 100_000
@@ -45,7 +50,7 @@ def transient(
     spectral_radius: float = 0.8,
     angle_error: float = 0.0,
     tolerance: float = 1e-8,
-    output: float = 0.0,
+    output: float | ArrayLike = 0.0,
     keep: Sequence[str] = (),
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -88,8 +93,10 @@ def transient(
     kept(keep, system.nodes, system.connections.names)
     state = starting(start, system, problem.acting, hold, problem.start_speed)
     notes = {"switched": words} if (words := _switching(problem)) else {}
-    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), output, progress, notes)
-    told = run.over(state, time)
+    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)
+    moments = wanted(output, time)
+    told = run.over(state, time, moments) if isinstance(moments, float) else run.at(state, time, moments)
+    notes |= honest(problem, told, run.accuracy)
     settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
     return presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
 
@@ -109,14 +116,26 @@ class Run:
 
     problem: Problem
     accuracy: Accuracy
-    output: float = 0.0
     progress: Progress | None = None
     notes: dict[str, str] = field(default_factory=dict)
 
-    def over(self, state: State, time: float) -> Marched:
-        """Everything from a state on over a ``time`` [s]."""
+    def at(self, state: State, time: float, times: Array) -> Marched:
+        """A run over a ``time`` [s] of which the moments ``times`` [s] from its start on are kept."""
+        whole, edges = self.accuracy, np.unique(np.concatenate([[0.0], times, [time]]))
+        parts: list[Marched] = []
+        for begin, end in itertools.pairwise(edges):
+            steps = max(math.ceil((end - begin) / whole.step - 1e-9), 1)
+            self.accuracy = replace(whole, step=(end - begin) / steps)
+            parts.append(self.over(parts[-1].end if parts else state, end - begin, end - begin))
+            if parts[-1].status != COMPLETE:
+                break
+        self.accuracy = whole
+        return _picked(_together(parts, parts[-1].status), state.time + times)
+
+    def over(self, state: State, time: float, output: float = 0.0) -> Marched:
+        """Everything from a state on over a ``time`` [s], kept at intervals of ``output`` [s]."""
         total = max(round(time / self.accuracy.step), 1)
-        every = max(round(self.output / self.accuracy.step), 1) if self.output else 1 + total // MOST_SAMPLES
+        every = max(round(output / self.accuracy.step), 1) if output else 1 + total // MOST_SAMPLES
         length = max(int(np.ceil(total / PIECES)), FEWEST)
         length += -length % every
         parts: list[Marched] = []
@@ -157,6 +176,25 @@ class Run:
     def _tell(self, reached: float, end: float, begun: float, simulated: float) -> None:
         if self.progress is not None:
             self.progress(reached, end, simulated / max(clock.perf_counter() - begun, 1e-9))
+
+
+def wanted(output: ArrayLike, time: float) -> float | Array:
+    """The interval of samples, or the moments [s] that are asked for, rising; ModelError for moments beyond the run."""
+    if np.ndim(output) == 0:
+        return float(np.asarray(output, dtype=float))
+    times = np.unique(np.asarray(output, dtype=float))
+    if not times.size or not (times[0] >= 0 and times[-1] <= time * (1 + 1e-12)):
+        found, allowed = (f"{times[0]:g} to {times[-1]:g} s" if times.size else "none"), f"0 to {time:g} s"
+        raise ModelError("a moment lies outside the run", where="output", found=found, allowed=allowed)
+    return np.asarray(np.minimum(times, time))
+
+
+def _picked(told: Marched, times: Array) -> Marched:
+    """The record at some of its moments."""
+    near = np.searchsorted(told.time, times - 1e-9 * np.maximum(np.abs(times), 1e-3))
+    at = np.unique(near[near < told.time.size])
+    fields = ("time", "angle", "speed", "acceleration", "torque", "memory", "load", "energy")
+    return told._replace(**{name: getattr(told, name)[at] for name in fields})
 
 
 def _together(parts: Sequence[Marched], status: str) -> Marched:

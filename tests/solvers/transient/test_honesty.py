@@ -1,0 +1,46 @@
+"""Samples at the moments that are asked for, and what a run says of its own energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from torsional.components import Coupling, Inertia, Shaft
+from torsional.engine import Excitation
+from torsional.errors import ModelError
+from torsional.laws import Contacts
+from torsional.powertrain import Powertrain
+from torsional.solvers.transient import State, transient
+from torsional.system import assemble
+
+DISC = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 100.0)}))
+PUSH = Excitation(("disc",), [0.0], 10.0, [[100.0]])
+
+
+def between_stops(step: float, **settings: object) -> xr.Dataset:
+    """A small mass thrown at elastic stops of 1e8 Nm/rad."""
+    law = Contacts.between(-0.01, 0.01, 1e8, 0.0)
+    line = assemble(Powertrain({"mass": Inertia(0.003), "stops": Coupling("ground", "mass", law)}))
+    start = State.at_rest(line).moved(0.0, [1.0])
+    return transient(line, (), 0.02, start, speed=0.0, step=step, **settings)  # type: ignore[arg-type]
+
+
+def test_moments_are_hit() -> None:
+    times = np.array([0.0, 0.01, np.pi / 100, 0.1, 0.25])
+    data = transient(DISC, PUSH, 0.3, "rest", output=times)
+    np.testing.assert_allclose(data.time.values, times, atol=1e-15)
+    np.testing.assert_allclose(data.angle.values[:, 0], 1 - np.cos(10 * times), atol=2e-7)
+    assert data.attrs["end_time"] == pytest.approx(0.3, rel=1e-14)
+    with pytest.raises(ModelError, match="outside the run"):
+        transient(DISC, PUSH, 0.3, "rest", output=[0.1, 0.4])
+
+
+@pytest.mark.parametrize("settings", [{"method": "newmark"}, {"spectral_radius": 0.5}])
+def test_a_stop_that_the_step_cannot_follow_is_told(settings: dict[str, object]) -> None:
+    """A contact lasts π sqrt(3e-11) = 17 µs: steps of 20 µs lose energy in it and say so, steps of 0.1 µs do not."""
+    coarse, fine = (between_stops(step, **settings) for step in (2e-5, 1e-7))
+    assert abs(coarse.angular_velocity.values[-1, 0]) < 0.5
+    assert "stops" in coarse.attrs["guarded"] and "took away" in coarse.attrs["energy_error"]
+    assert abs(fine.angular_velocity.values[-1, 0]) == pytest.approx(1.0, abs=3e-5)
+    assert not {"guarded", "energy_error", "refined"} & set(fine.attrs)
