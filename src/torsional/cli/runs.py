@@ -16,6 +16,7 @@ from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 
+_ROUNDING = 1e-13
 _ENERGIES = {
     "dampers": "lost in dampers",
     "friction": "lost in friction",
@@ -77,7 +78,9 @@ def _travel(run: xr.Dataset, springs: Sequence[str]) -> list[Table]:
 def _energies(run: xr.Dataset) -> Table:
     columns = [Column("energy up to the end"), Column("", "energy")]
     known = [str(name) for name in run.share.values]
-    rows = [[told, float(run.energy.sel(share=name)[-1])] for name, told in _ENERGIES.items() if name in known]
+    nothing = _ROUNDING * float(np.abs(run.energy).max())
+    shares = {told: float(run.energy.sel(share=name)[-1]) for name, told in _ENERGIES.items() if name in known}
+    rows = [[told, value if abs(value) > nothing else 0.0] for told, value in shares.items()]
     return Table("Energy", columns, rows)
 
 
