@@ -53,7 +53,7 @@ def test_a_start_reaches_idle_and_tells_its_peaks(torsional: Run, truck: str) ->
     assert "Springs against their stops" in told.out
     document = json.loads(Path("s.json").read_text(encoding="utf-8"))
     assert (document["command"], document["settings"]["scenario"]) == ("scenario", "engine_start")
-    assert document["values"]["starter"]["torque"] == 1200.0
+    assert document["values"]["starter"]["until"] == 1.2
     run = load_results("s.nc")
     last = run.angular_velocity.sel(node="primary", time=slice(1.8, None)).mean()
     assert float(last) == pytest.approx(600 * RPM, rel=0.03)

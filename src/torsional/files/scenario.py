@@ -27,8 +27,8 @@ def load_scenario(source: str | os.PathLike[str], changes: Sequence[str] = ()) -
 
     ModelError, and no other error, says what is wrong: file, key path with line, what was found, what is allowed.
 
-    >>> load_scenario("engine_start", ["starter.speed=150 rpm"]).starter.torque
-    1200.0
+    >>> load_scenario("engine_start", ["starter.torque=900 Nm"]).starter.torque
+    900.0
     """
     if isinstance(source, str) and not Path(source).suffix and os.sep not in source:
         if source not in KINDS and not Path(source).exists():

@@ -42,7 +42,7 @@ GearName = Annotated[str, BeforeValidator(_gear), Field(max_length=64)]
 class Starter(Block):
     """A starter motor on the crankshaft, one-way: its torque falls in a straight line with the crank's speed."""
 
-    torque: Torque = Field(1200.0, description="at standstill, at the crankshaft")
+    torque: Torque | None = Field(None, description="at standstill, at the crankshaft; default: half of full load")
     speed: Speed = Field(250 * RPM, description="of the crank, at which it gives no more")
     until: Time = Field(1.2, description="when it is switched off")
 
@@ -51,7 +51,7 @@ class SpeedGovernor(Block):
     """What keeps the engine at a speed: heat of combustion as a share of that for the most torque it may ask for."""
 
     speed: Speed | None = Field(None, description="wanted; default: the model's idle speed")
-    torque: Torque = Field(1000.0, description="mean torque at most")
+    torque: Torque | None = Field(None, description="mean torque at most; default: 0.4 of full load")
     droop: Speed = Field(150 * RPM, description="by which the speed must fall for that torque")
     reset: Time = Field(1.0, description="time after which a lasting error has doubled its effect")
 
@@ -59,12 +59,16 @@ class SpeedGovernor(Block):
 class ClutchLinings(Block):
     """Linings that slip: their capacity grows from nought to full while the clutch is engaged."""
 
-    capacity: Torque = Field(3500.0, description="torque that it carries sliding, fully pressed")
+    capacity: Torque | None = Field(None, description="carried sliding, fully pressed; default: 1.4 times full load")
     breakaway: Share = Field(1.1, description="torque that it carries sticking over that")
     engages: Moment = Field(0.2, description="when pressing begins")
     within: Time = Field(0.5, description="until the linings are fully pressed")
-    lining_inertia: Inertia = Field(0.03, description="of linings and carrier plate, ahead of the damper")
-    stiffness: Stiffness = Field(1e6, description="of the linings while they stick")
+    lining_inertia: Inertia | None = Field(
+        None, description="of linings and carrier plate, ahead of the damper; default: a third of the disc's"
+    )
+    stiffness: Stiffness | None = Field(
+        None, description="of the linings while they stick; default: their capacity at 1/300 rad"
+    )
 
 
 B = TypeVar("B", bound=Block)

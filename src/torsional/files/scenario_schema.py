@@ -9,7 +9,6 @@ from pydantic import Field, model_validator
 from torsional import units
 from torsional.errors import ModelError
 from torsional.files.scenario_blocks import (
-    RPM,
     AnyTorque,
     ClutchLinings,
     GearName,
@@ -60,9 +59,9 @@ class _Tip(Scenario):
 
     duration: Time = 2.0
     gear: GearName = Field("", description="default: the last one")
-    speed: Speed = Field(1000 * RPM, description="of the engine before")
-    before: AnyTorque = Field(0.0, description="mean engine torque before")
-    after: AnyTorque = Field(1500.0, description="mean engine torque after")
+    speed: Speed | None = Field(None, description="of the engine before; default: 2/7 up its range")
+    before: AnyTorque | None = Field(None, description="mean engine torque before; default: none")
+    after: AnyTorque | None = Field(None, description="mean engine torque after; default: 0.6 of full load")
     at: Moment = Field(0.3, description="when it changes")
     within: Time = Field(0.05, description="time that the change takes")
 
@@ -77,24 +76,14 @@ class TipIn(_Tip):
     title: ClassVar[str] = "Tip-in"
     scenario: Literal["tip_in"]
 
-    @model_validator(mode="after")
-    def _rises(self) -> TipIn:
-        _ordered(self, self.before < self.after, "more than before", "tip_out")
-        return self
-
 
 class TipOut(_Tip):
     """The driver leaves the pedal in gear."""
 
     title: ClassVar[str] = "Tip-out"
     scenario: Literal["tip_out"]
-    before: AnyTorque = Field(1500.0, description="mean engine torque before")
-    after: AnyTorque = Field(0.0, description="mean engine torque after")
-
-    @model_validator(mode="after")
-    def _falls(self) -> TipOut:
-        _ordered(self, self.before > self.after, "less than before", "tip_in")
-        return self
+    before: AnyTorque | None = Field(None, description="mean engine torque before; default: 0.6 of full load")
+    after: AnyTorque | None = Field(None, description="mean engine torque after; default: none")
 
 
 class ClutchEngagement(Scenario):
@@ -104,9 +93,11 @@ class ClutchEngagement(Scenario):
     scenario: Literal["clutch_engagement"]
     duration: Time = 3.0
     gear: GearName = Field("", description="default: the first one")
-    speed: Speed = Field(1000 * RPM, description="of the engine before")
+    speed: Speed | None = Field(None, description="of the engine before; default: 2/7 up its range")
     vehicle_at: SpeedOrZero = Field(0.0, description="speed of the gearbox input at which the vehicle rolls")
-    torque: Torque = Field(800.0, description="mean engine torque at most, asked for by the governor")
+    torque: Torque | None = Field(
+        None, description="mean engine torque at most, asked for by the governor; default: 0.3 of full load"
+    )
     road_load: Torque | None = Field(None, description="resistance, at the node that takes up the load")
     clutch: ClutchLinings = Field(default_factory=usual(ClutchLinings, within=1.0))
 
@@ -123,8 +114,10 @@ class GearShift(Scenario):
     duration: Time = 1.5
     from_gear: GearName = Field("", description="default: the last but one")
     to_gear: GearName = Field("", description="default: the last one")
-    speed: Speed = Field(1400 * RPM, description="of the engine, in the old gear")
-    torque: TorqueOrZero = Field(1000.0, description="mean engine torque after the shift")
+    speed: Speed | None = Field(None, description="of the engine, in the old gear; default: 4/7 up its range")
+    torque: TorqueOrZero | None = Field(
+        None, description="mean engine torque after the shift; default: 0.4 of full load"
+    )
     torque_from: Moment = Field(0.6, description="when the engine begins to pull again")
     clutch: ClutchLinings = Field(default_factory=usual(ClutchLinings, within=0.3))
 
@@ -140,9 +133,11 @@ class Stall(Scenario):
     scenario: Literal["stall"]
     duration: Time = 2.0
     gear: GearName = Field("", description="default: the last one")
-    speed: Speed = Field(800 * RPM, description="of the engine before")
-    torque: Torque = Field(600.0, description="mean engine torque, up to the end of combustion")
-    brake: Torque = Field(40e3, description="at the braked node")
+    speed: Speed | None = Field(None, description="of the engine before; default: 1/7 up its range")
+    torque: Torque | None = Field(
+        None, description="mean engine torque, up to the end of combustion; default: a quarter of full load"
+    )
+    brake: Torque | None = Field(None, description="at the braked node; default: 0.2 of the weight at the wheels")
     node: Node = Field("wheels", description="that is braked")
     tyres: str = Field("tyres", description="connection between wheels and vehicle", max_length=64)
     grip: Torque | None = Field(
@@ -150,7 +145,9 @@ class Stall(Scenario):
     )
     at: Moment = Field(0.2, description="when braking begins")
     within: Time = Field(0.15, description="until the brake is fully on")
-    fuel_off: Speed = Field(300 * RPM, description="engine speed under which nothing burns any more")
+    fuel_off: Speed | None = Field(
+        None, description="engine speed under which nothing burns any more; default: half of idle"
+    )
 
     def moments(self) -> list[tuple[str, float]]:
         """The beginning of braking."""
@@ -164,10 +161,12 @@ class TractionLoss(Scenario):
     scenario: Literal["traction_loss"]
     duration: Time = 2.0
     gear: GearName = Field("", description="default: the middle one")
-    speed: Speed = Field(1000 * RPM, description="of the engine before")
-    torque: Torque = Field(1500.0, description="mean engine torque")
+    speed: Speed | None = Field(None, description="of the engine before; default: 2/7 up its range")
+    torque: Torque | None = Field(None, description="mean engine torque; default: 0.6 of full load")
     tyres: str = Field("tyres", description="connection between wheels and vehicle", max_length=64)
-    grip: Torque = Field(60e3, description="torque that the driven wheels hold on dry road")
+    grip: Torque | None = Field(
+        None, description="torque that the driven wheels hold on dry road; default: 0.3 of the weight at the wheels"
+    )
     slippery: Share = Field(0.15, description="share of the grip left on the slippery stretch")
     lost: Moment = Field(0.3, description="when the slippery stretch begins")
     found: Time = Field(0.7, description="when it ends")
@@ -191,7 +190,7 @@ class IdlePulse(Scenario):
     scenario: Literal["idle_pulse"]
     duration: Time = 3.0
     speed: Speed | None = Field(None, description="default: idle")
-    pulse: AnyTorque = 500.0
+    pulse: AnyTorque | None = Field(None, description="torque; default: a fifth of full load")
     node: str = Field("", description="on which it acts; default: the crankshaft", max_length=64)
     at: Moment = 1.0
     length: Time = Field(0.033, description="of the pulse")
@@ -199,13 +198,6 @@ class IdlePulse(Scenario):
     def moments(self) -> list[tuple[str, float]]:
         """The pulse."""
         return [("at", self.at)]
-
-
-def _ordered(tip: _Tip, right: bool, allowed: str, other: str) -> None:
-    if not right:
-        before = units.show(tip.before, "torque")
-        told = {"found": units.show(tip.after, "torque"), "allowed": f"{allowed}, {before}"}
-        raise ModelError("the torque changes the other way", where="after", **told, remedy=f"or choose {other}")
 
 
 KINDS: dict[str, type[Scenario]] = {

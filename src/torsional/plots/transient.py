@@ -40,14 +40,14 @@ def plot_transient(
 def draw_motion(
     drawn: Sequence[Axes], run: xr.Dataset, nodes: Sequence[str], springs: Sequence[str], elements: Sequence[str]
 ) -> None:
-    """Three panels: speeds, twists, torques."""
+    """Three panels: speeds, twists (of the springs, or where there are none of the elements), torques."""
     ratio = run.speed_ratio
     for node in nodes:
         at_engine = run.angular_velocity.sel(node=node) / (float(ratio.sel(node=node)) or 1.0)
         named = style.readable(node) + ("" if abs(float(ratio.sel(node=node)) - 1) < 1e-9 else ", as at the engine")
         draw_line(drawn[0], run, style.shown(at_engine, "speed"), named)
     drawn[0].set_ylabel(style.label("speed", name="speed"))
-    for spring in springs:
+    for spring in springs or elements:
         draw_line(drawn[1], run, style.shown(run.twist.sel(element=spring)), style.readable(spring))
     draw_stops(drawn[1], run, springs)
     drawn[1].set_ylabel(style.label("relative_angle", name="twist"))
@@ -57,7 +57,7 @@ def draw_motion(
     drawn[2].set_ylabel(style.label("torque", name="torque"))
     for axes in drawn[:3]:
         axes.set_xlim(float(run.time[0]), float(run.time[-1]))
-        if len(axes.get_legend_handles_labels()[0]) > 1:
+        if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.985), ncols=4, borderpad=0.1)
 
 

@@ -38,8 +38,8 @@ def torque_of(governor: Governor, speed: float, time: float) -> float:
 
 
 def test_the_starter_falls_with_speed_never_brakes_and_is_switched_off(truck: Model) -> None:
-    block = Starter.model_validate({"torque": 1200.0, "speed": 25.0, "until": 1.0})
-    starter = starter_motor(block, "primary")
+    block = Starter.model_validate({"speed": 25.0, "until": 1.0})
+    starter = starter_motor(block, "primary", 1200.0)
     at = [torque_of(starter, speed, 0.5) for speed in (-5.0, 0.0, 10.0, 25.0, 60.0)]
     # 1200 (1 − 10/25) = 720
     assert at == pytest.approx([1200.0, 1200.0, 720.0, 0.0, 0.0])
@@ -122,6 +122,8 @@ def test_linings_that_stick_carry_the_mean_torque_from_the_start(truck: Model) -
 
 
 BAD = [
+    ("tip_in", "after=-100 Nm", ["after", "the other way", "tip_out"]),
+    ("tip_out", "after=2000 Nm", ["after", "less than before", "tip_in"]),
     ("tip_in", "gear=13", ["gear", "there is no gear '13'", "allowed: 1, 2"]),
     ("tip_in", "after=4000 Nm", ["after", "would rest on its stop", "4000 Nm", "up to 3500 Nm"]),
     ("clutch_engagement", "torque=3600 Nm", ["torque", "stop", "3600 Nm"]),
@@ -157,6 +159,33 @@ def test_linings_carry_their_capacity_while_they_slide() -> None:
     assert fast == pytest.approx(linings.capacity)
     slow = float(linings.law.loaded(linings.clamp_force).steady(1e-6))
     assert slow == pytest.approx(1.2 * linings.capacity)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples" / "scenarios").glob("*.yaml")), ids=lambda path: path.stem)
+def test_examples_are_what_holds_for_the_truck_without_them(truck: Model, path: Path) -> None:
+    """Torques that are left out follow from the model: for the shipped truck they are those of the examples."""
+    shown, usual = planned(load_scenario(path), truck), planned(load_scenario(path.stem), truck)
+    assert (shown.speed, shown.duration, shown.lag) == pytest.approx((usual.speed, usual.duration, usual.lag))
+    assert shown.levels == usual.levels
+    for name, (knots, _) in shown.shown.items():
+        assert np.array(knots[1]) == pytest.approx(np.array(usual.shown[name][0][1])), name
+    for mine, other in zip(shown.drives, usual.drives, strict=True):
+        assert getattr(mine, "torque", 0.0) == pytest.approx(getattr(other, "torque", 0.0))
+        assert getattr(mine, "high", 0.0) == pytest.approx(getattr(other, "high", 0.0))
+    for part in ("brake", "road", "clutch_linings", "clutch_lining"):
+        if part in shown.line.components:
+            pairs = zip(vars(shown.line[part]).values(), vars(usual.line[part]).values(), strict=True)
+            assert all(a == (pytest.approx(b) if isinstance(b, float) else b) for a, b in pairs), part
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_suits_a_car_as_well(kind: str) -> None:
+    """Usual torques are shares of full load: none rests on the stop of a car's flywheel."""
+    car = load_model(ROOT / "examples" / "passenger_car_dmf.yaml")
+    plan = planned(load_scenario(kind), car)
+    assert plan.duration > 0
+    if "clutch_linings" in plan.line.components:
+        assert plan.line["clutch_linings"].capacity == pytest.approx(1.4 * 380)
 
 
 def test_contacts_count_every_arrival_on_either_side() -> None:

@@ -4,38 +4,44 @@ from __future__ import annotations
 
 from typing import Any
 
-from torsional.components import Vehicle
 from torsional.errors import ModelError
 from torsional.files.scenario_blocks import Scenario, SpeedGovernor
 from torsional.files.scenario_schema import ClutchEngagement, GearShift, Stall, TipIn, TipOut, TractionLoss
 from torsional.model import Model
 from torsional.powertrain import Powertrain
-from torsional.studies.scenarios import lines
+from torsional.studies.scenarios import lines, sizes
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import cylinders, fuel_cut, heat_for, pulse, ramp, speed_governor
 from torsional.units import show
 
+LOWEST, LOW, MIDDLE = 1.0 / 7.0, 2.0 / 7.0, 4.0 / 7.0
+"""Shares of the way up the operating range at which an engine runs where no speed is given."""
 LOCKING = 0.5
 """Grip over the brake's torque where none is given: the wheels lock."""
 CUT_WIDTH = 3.0
 """Speed [rad/s] over which an engine that stalls stops burning."""
-ROLLING, GRAVITY = 0.006, 9.81
+ROLLING = 0.006
 """Rolling resistance of a truck's tyres over its weight, where no road load is given."""
 
 
 def tip(block: TipIn | TipOut, model: Model) -> Plan:
     """Mean torque that changes in gear; the vehicle takes up what there was before."""
+    speed = sizes.speed(model, block.speed, LOW)
     gear = lines.gear_of(model, block.gear)
-    within_stop(model, gear, before=block.before, after=block.after)
-    most, shares = heat_for(model, block.speed, [block.before, block.after])
+    rising = block.scenario == "tip_in"
+    before = sizes.torque(model, block.before, 0.0 if rising else 0.6, "before")
+    after = sizes.torque(model, block.after, 0.6 if rising else 0.0, "after")
+    _ordered(rising, before, after)
+    within_stop(model, gear, before=before, after=after)
+    most, shares = heat_for(model, speed, [before, after])
     times, values = ramp(block.at, block.within, *shares)
-    motor = cylinders(model, block.speed, most, (times, values))
-    wanted = ramp(block.at, block.within, block.before, block.after)
+    motor = cylinders(model, speed, most, (times, values))
+    wanted = ramp(block.at, block.within, before, after)
     return Plan(
         **_in_gear(block, model, lines.line_of(model, gear), gear),
         nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=(motor,),
-        speed=block.speed,
+        speed=speed,
         start="vibrating",
         hold=lines.load_of(model),
         shown={"mean engine torque": (wanted, "torque")},
@@ -44,95 +50,108 @@ def tip(block: TipIn | TipOut, model: Model) -> Plan:
 
 def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
     """The governor holds the engine's speed while the linings drag the vehicle along."""
+    speed = sizes.speed(model, block.speed, LOW)
     gear = lines.gear_of(model, block.gear, 0)
-    if block.vehicle_at > block.speed:
-        told = {"found": show(block.vehicle_at, "speed"), "allowed": f"up to {show(block.speed, 'speed')}"}
+    if block.vehicle_at > speed:
+        told = {"found": show(block.vehicle_at, "speed"), "allowed": f"up to {show(speed, 'speed')}"}
         raise ModelError("the engine must be the faster", where="vehicle_at", **told)
-    within_stop(model, gear, torque=block.torque)
-    line, flywheel = lines.with_linings(lines.line_of(model, gear), model, block.clutch)
+    torque = sizes.torque(model, block.torque, 0.3, "torque")
+    within_stop(model, gear, torque=torque)
+    line, flywheel, capacity = lines.with_linings(lines.line_of(model, gear), model, block.clutch)
     load = lines.load_of(model)
-    line = lines.resisted(line, load, block.road_load or _road_load(model))
-    most, _ = heat_for(model, block.speed, [block.torque])
-    governor = SpeedGovernor.model_validate({"torque": block.torque, "droop": 0.1 * block.speed})
+    line = lines.resisted(line, load, sizes.at_wheels(model, block.road_load, ROLLING, "road_load"))
+    most, _ = heat_for(model, speed, [torque])
+    governor = SpeedGovernor.model_validate({"torque": torque, "droop": 0.1 * speed})
     drives = (
-        cylinders(model, block.speed, most, ((0.0,), (0.0,))),
-        speed_governor(governor, lines.crank_of(model), block.speed),
+        cylinders(model, speed, most, ((0.0,), (0.0,))),
+        speed_governor(governor, lines.crank_of(model), speed),
     )
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear, lines.LININGS),
         nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=drives,
-        speed=block.speed,
-        lag=block.speed - block.vehicle_at,
+        speed=speed,
+        lag=speed - block.vehicle_at,
         lagging=lines.behind(line, lines.LININGS, flywheel),
         levels={"clutch": pressed},
-        shown={"clutch capacity": (_times(pressed, block.clutch.capacity), "torque")},
+        shown={"clutch capacity": (_times(pressed, capacity), "torque")},
     )
 
 
 def gear_shift(block: GearShift, model: Model) -> Plan:
     """The vehicle rolls as fast as in the old gear; the clutch brings the engine to the new gear's speed."""
+    speed = sizes.speed(model, block.speed, MIDDLE)
     old = lines.gear_of(model, block.from_gear, -2, "from_gear")
     new = lines.gear_of(model, block.to_gear, -1, "to_gear")
     if old == new:
         raise ModelError("the gear stays the same", where="to_gear", found=f"'{new}'", remedy="name another one")
-    within_stop(model, new, torque=block.torque)
-    line, flywheel = lines.with_linings(lines.line_of(model, new), model, block.clutch)
-    rolling = block.speed * model.gears[new].ratio / model.gears[old].ratio
-    most, shares = heat_for(model, block.speed, [0.0, block.torque])
+    torque = sizes.torque(model, block.torque, 0.4, "torque")
+    within_stop(model, new, torque=torque)
+    line, flywheel, capacity = lines.with_linings(lines.line_of(model, new), model, block.clutch)
+    rolling = speed * model.gears[new].ratio / model.gears[old].ratio
+    most, shares = heat_for(model, speed, [0.0, torque])
     pulls = ramp(block.torque_from, 0.1, *shares)
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, new, lines.LININGS),
         nodes=(model.landmarks.input,) if model.landmarks.input else (),
-        drives=(cylinders(model, block.speed, most, pulls),),
-        speed=block.speed,
-        lag=block.speed - rolling,
+        drives=(cylinders(model, speed, most, pulls),),
+        speed=speed,
+        lag=speed - rolling,
         lagging=lines.behind(line, lines.LININGS, flywheel),
         levels={"clutch": pressed},
         shown={
-            "clutch capacity": (_times(pressed, block.clutch.capacity), "torque"),
-            "mean engine torque": (ramp(block.torque_from, 0.1, 0.0, block.torque), "torque"),
+            "clutch capacity": (_times(pressed, capacity), "torque"),
+            "mean engine torque": (ramp(block.torque_from, 0.1, 0.0, torque), "torque"),
         },
     )
 
 
 def stall(block: Stall, model: Model) -> Plan:
     """A brake on the wheels, the engine burning until it is too slow."""
+    speed = sizes.speed(model, block.speed, LOWEST)
     gear = lines.gear_of(model, block.gear)
-    within_stop(model, gear, torque=block.torque)
-    road = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip or LOCKING * block.brake)
-    line = lines.braked(road, block.node, block.brake)
-    most, (share,) = heat_for(model, block.speed, [block.torque])
+    torque = sizes.torque(model, block.torque, 0.25, "torque")
+    within_stop(model, gear, torque=torque)
+    brake = sizes.at_wheels(model, block.brake, 0.2, "brake")
+    road = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip or LOCKING * brake)
+    line = lines.braked(road, block.node, brake)
+    most, (share,) = heat_for(model, speed, [torque])
     crank = lines.crank_of(model)
-    drives = (cylinders(model, block.speed, most, ((0.0,), (share,))), fuel_cut(crank, block.fuel_off, CUT_WIDTH))
+    drives = (
+        cylinders(model, speed, most, ((0.0,), (share,))),
+        fuel_cut(crank, block.fuel_off or 0.5 * model.operation.idle, CUT_WIDTH),
+    )
     pressed = ramp(block.at, block.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear),
         nodes=(_turning(line, block.tyres), lines.load_of(model)),
         drives=drives,
-        speed=block.speed,
+        speed=speed,
         start="vibrating",
         hold=lines.load_of(model),
         stuck=(lines.ROAD,),
         levels={"brake": pressed},
-        shown={"brake": (_times(pressed, block.brake), "torque")},
+        shown={"brake": (_times(pressed, brake), "torque")},
     )
 
 
 def traction_loss(block: TractionLoss, model: Model) -> Plan:
     """Wheels that spin on a slippery stretch and meet dry road again."""
+    speed = sizes.speed(model, block.speed, LOW)
     gear = lines.gear_of(model, block.gear, len(model.gear_names) // 2)
-    within_stop(model, gear, torque=block.torque)
-    line = lines.gripping(lines.line_of(model, gear), block.tyres, block.grip, "grip")
-    most, (share,) = heat_for(model, block.speed, [block.torque])
+    torque = sizes.torque(model, block.torque, 0.6, "torque")
+    within_stop(model, gear, torque=torque)
+    held = sizes.at_wheels(model, block.grip, 0.3, "grip")
+    line = lines.gripping(lines.line_of(model, gear), block.tyres, held, "grip")
+    most, (share,) = heat_for(model, speed, [torque])
     grip = pulse(block.lost, block.found - block.lost, block.slippery, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear),
         nodes=(_turning(line, block.tyres), lines.load_of(model)),
-        drives=(cylinders(model, block.speed, most, ((0.0,), (share,))),),
-        speed=block.speed,
+        drives=(cylinders(model, speed, most, ((0.0,), (share,))),),
+        speed=speed,
         start="vibrating",
         hold=lines.load_of(model),
         stuck=(lines.ROAD,),
@@ -162,12 +181,12 @@ def _turning(line: Powertrain, tyres: str) -> str:
     return str(line[tyres].b)
 
 
-def _road_load(model: Model) -> float:
-    """Rolling resistance of the vehicle at its wheels [Nm]."""
-    vehicle = next((part for part in model.components.values() if isinstance(part, Vehicle)), None)
-    if vehicle is None:
-        raise ModelError("the resistance of the road is not known", where="road_load", remedy="give road_load in Nm")
-    return ROLLING * vehicle.mass * GRAVITY * vehicle.rolling_radius
+def _ordered(rising: bool, before: float, after: float) -> None:
+    if not (after > before if rising else after < before):
+        allowed = f"{'more' if rising else 'less'} than before, {show(before, 'torque')}"
+        told = {"found": show(after, "torque"), "allowed": allowed}
+        other = "tip_out" if rising else "tip_in"
+        raise ModelError("the torque changes the other way", where="after", **told, remedy=f"or choose {other}")
 
 
 def _times(knots: Any, factor: float) -> Any:

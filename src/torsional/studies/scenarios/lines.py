@@ -14,6 +14,7 @@ from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND
 from torsional.studies.claims.trucks import reached
+from torsional.studies.scenarios import sizes
 
 LINING, LININGS = "clutch_lining", "clutch_linings"
 BRAKE, PATCH, ROAD, RESISTANCE = "brake", "contact_patch", "road", "road_load"
@@ -21,6 +22,8 @@ PATCH_INERTIA = 1.0
 """Of the tread in contact with the road [kgm²]: little beside a wheel."""
 STICKING = 100.0
 """Torque that linings hold over the twist [rad] of those that stick: a brake at 1/100 rad."""
+DAMPED = 1e-4
+"""Damping of linings that stick over their stiffness [s]."""
 CREEP = 0.02
 """Speed [rad/s] of a standing vehicle's wheels below which its resistance fades."""
 
@@ -73,8 +76,9 @@ def in_neutral(model: Model) -> Powertrain:
     return Powertrain(parts, 1, line.reference)
 
 
-def with_linings(line: Powertrain, model: Model, block: ClutchLinings) -> tuple[Powertrain, str]:
-    """The line with linings that slip ahead of the clutch damper, pressed by the level "clutch"; the flywheel's node.
+def with_linings(line: Powertrain, model: Model, block: ClutchLinings) -> tuple[Powertrain, str, float]:
+    """The line with linings that slip ahead of the clutch damper, pressed by the level "clutch"; the flywheel's node;
+    what they carry [Nm].
 
     The damper, and friction beside it, hang on the linings instead of the flywheel.
     """
@@ -82,15 +86,17 @@ def with_linings(line: Powertrain, model: Model, block: ClutchLinings) -> tuple[
     if not name:
         remedy = "give the file a clutch, or landmarks.clutch"
         raise ModelError("the scenario needs a clutch", where="landmarks.clutch", remedy=remedy)
-    flywheel = _ends(line, name)[1]
+    disc, flywheel = _ends(line, name)
+    capacity = sizes.torque(model, block.capacity, 1.4, "clutch.capacity")
     moved = dict(line.components)
     for other, part in line.components.items():
         if isinstance(part, Coupling | Shaft) and (part.a, part.b) == _ends(line, name):
             moved[other] = dataclasses.replace(part, b=LINING)
-    values: dict[str, Any] = {"breakaway": block.breakaway, "stiffness": block.stiffness, "level": "clutch"}
-    moved[LINING] = Inertia(block.lining_inertia)
-    moved[LININGS] = SlipClutch.of_capacity(LINING, flywheel, block.capacity, **values)
-    return Powertrain(moved, line.parts, line.reference), flywheel
+    values: dict[str, Any] = {"breakaway": block.breakaway, "damping": sizes.STICKING * capacity * DAMPED}
+    values |= {"stiffness": block.stiffness or sizes.STICKING * capacity, "level": "clutch"}
+    moved[LINING] = Inertia(sizes.lining_inertia(model, block.lining_inertia, disc))
+    moved[LININGS] = SlipClutch.of_capacity(LINING, flywheel, capacity, **values)
+    return Powertrain(moved, line.parts, line.reference), flywheel, capacity
 
 
 def _ends(line: Powertrain, name: str) -> tuple[str, str]:

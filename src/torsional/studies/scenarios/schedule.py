@@ -37,14 +37,14 @@ def pulse(at: float, length: float, height: float, rest: float = 0.0) -> Knots:
     return (at, at, at + length, at + length), (rest, height, height, rest)
 
 
-def starter_motor(block: Starter, crank: str) -> Governor:
-    """The starter: T = torque (1 − speed/free speed) between nought and the torque at standstill, until it is off.
+def starter_motor(block: Starter, crank: str, torque: float) -> Governor:
+    """The starter: T = ``torque`` (1 − speed/free speed) between nought and the torque at standstill, until it is off.
 
     It pushes and never brakes: the pinion runs free above its speed.
     """
     wanted = SpeedProfile((0.0, block.until, block.until), (block.speed, block.speed, NEVER))
-    slope = block.torque / block.speed
-    return Governor(crank, wanted, acts_on=crank, proportional=slope, low=0.0, high=block.torque)
+    slope = torque / block.speed
+    return Governor(crank, wanted, acts_on=crank, proportional=slope, low=0.0, high=torque)
 
 
 def speed_governor(block: SpeedGovernor, crank: str, wanted: float, start: float = 0.0) -> Governor:

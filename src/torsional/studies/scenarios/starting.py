@@ -11,6 +11,7 @@ from torsional.files.scenario_schema import EngineStart, EngineStop, IdlePulse
 from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.cylinders import CylinderTorques
+from torsional.studies.scenarios import sizes
 from torsional.studies.scenarios.lines import crank_of, in_neutral
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import (
@@ -29,8 +30,9 @@ ANGLES = 2881
 def engine_start(block: EngineStart, model: Model) -> Plan:
     """Starter from rest, heat from the first firing on, as much as the governor asks for."""
     crank, idle = crank_of(model), block.governor.speed or model.operation.idle
-    motor = cylinders(model, idle, block.governor.torque, ((0.0,), (0.0,)))
-    starter = starter_motor(block.starter, crank)
+    most = sizes.torque(model, block.governor.torque, 0.4, "governor.torque")
+    motor = cylinders(model, idle, most, ((0.0,), (0.0,)))
+    starter = starter_motor(block.starter, crank, sizes.torque(model, block.starter.torque, 0.5, "starter.torque"))
     governor = speed_governor(block.governor, crank, idle, block.firing_from)
     marks = {"starter": (pulse(0.0, block.starter.until, 1.0), ""), "firing": (pulse(block.firing_from, 1e9, 1.0), "")}
     drives = (motor, starter, governor)
@@ -53,8 +55,9 @@ def idle_pulse(block: IdlePulse, model: Model) -> Plan:
         told = {"found": f"'{node}'", "remedy": nearest(node, line.nodes)}
         raise ModelError("there is no such node in neutral", where="node", **told)
     motor = cylinders(model, speed, *_heat(model, speed, np.inf))
-    pushed = torque_pulse(node, block.at, block.length, block.pulse)
-    marks = {"pulse": (pulse(block.at, block.length, block.pulse), "torque")}
+    height = sizes.torque(model, block.pulse, 0.2, "pulse")
+    pushed = torque_pulse(node, block.at, block.length, height)
+    marks = {"pulse": (pulse(block.at, block.length, height), "torque")}
     return Plan(**_alone(block, model, line), **_idling(model), drives=(motor, pushed), speed=speed, shown=marks)
 
 
