@@ -7,7 +7,7 @@ import pytest
 from tests.numerics.stepping_models import Crank, Link, Push, equations, sine
 from tests.numerics.test_stepping import MEMBERS, marched, rattling, smooth_chain, wall
 
-from torsional.laws import Coulomb, Jenkins, Karnopp, LuGre, Polynomial
+from torsional.laws import Coulomb, Jenkins, Karnopp, LuGre, Polynomial, Table
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Count, Entry, March, Settings, Status, begin, march, produced
 from torsional.numerics.stepping_data import Equations
@@ -149,3 +149,24 @@ def test_a_start_in_contact_and_with_memory_is_in_balance() -> None:
     np.testing.assert_allclose(state.coordinates[2], wanted, rtol=1e-7)
     first = march(plan, MEMBERS["newmark"], 1e-7, 1, state).records.acceleration[1]
     np.testing.assert_allclose(first, wanted, rtol=1e-4)
+
+
+@pytest.mark.parametrize("step", [1e-3, 1e-4])
+def test_a_stiff_curve_makes_energy_and_that_is_told(step: float) -> None:
+    """Stops as a smooth law: what the mean torque misses of its integral is the method's own, not strain."""
+    curve = Table(((-0.02, -1e6), (-0.01, 0.0), (0.0, 0.0), (0.01, 0.0), (0.02, 1e6)))
+    stops = equations([0.003], [Link([1.0], law=curve)])
+    steps = round(1.0 / step)
+    found = marched(stops, 0.0, 1.0, 1.0, steps, MEMBERS["newmark"], stride=steps // 100)
+    ledger = found.records.ledger
+    gained = ledger[:, Entry.KINETIC].max() / ledger[0, Entry.KINETIC] - 1.0
+    assert gained > 0.05, "the case makes energy"
+    assert found.status == Status.PRODUCES
+    most = ledger[:, Entry.KINETIC].max()
+    assert imbalance(found) * ledger[-1, Entry.THROUGHPUT] <= 1e-9 * most
+    assert ledger[:, Entry.STRAIN].min() >= -0.01 * most, "no energy is hidden as strain below nought"
+
+
+def test_a_ledger_that_overflows_is_told() -> None:
+    found = marched(equations([1.0], [Link([1.0], 100.0)]), 0.0, 1e160, 1.0, 100, MEMBERS["newmark"])
+    assert found.status == Status.NOT_FINITE

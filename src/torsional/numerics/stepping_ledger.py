@@ -18,6 +18,10 @@ from torsional.numerics.stepping_state import Entry, State
 from torsional.numerics.stepping_step import Trial, Work, inertial
 from torsional.numerics.uncounted import inlined, uncounted
 
+PLACES = (0.046910077030668, 0.2307653449471585, 0.5, 0.7692346550528415, 0.953089922969332)
+SHARES = (0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454)
+"""Gauss's five places between 0 and 1, and how much each counts."""
+
 summed = functools.partial(inlined, fastmath={"reassoc", "contract"})
 
 
@@ -99,25 +103,42 @@ def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledge
 
 
 @uncounted()
-def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, ledger: Array) -> None:
-    """What laws kept and lost; a law with memory keeps k_el z²/2, one without what its torque at rest keeps."""
+def _integral(address: int, values: Array, start: float, turned: float) -> float:
+    """Integral of a law's torque at rest over an angle, after Gauss."""
+    torque, total = law_at(address), 0.0
+    for i in range(len(PLACES)):
+        total += SHARES[i] * torque(values, start + PLACES[i] * turned, 0.0, 0.0, 0.0)[0]
+    return total * turned
+
+
+@uncounted()
+def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, ledger: Array) -> float:
+    """What laws kept and lost, and what the method made of its own where the mean of a torque is not its integral.
+
+    A law with memory keeps k_el z²/2, one without the integral of its torque at rest.
+    """
+    made = 0.0
     for l in range(laws.of.size):
         e, torque = laws.of[l], law_at(laws.address[l])
         values = bent.values[laws.start[l] : laws.stop[l]]
         turned, mean = now.twist[e] - state.connection[0, e], 0.5 * (bent.torque[l] + state.law[0, l])
         beside = mean * 0.5 * h * (now.offset[e] + state.connection[3, e])
         told = torque(values, now.twist[e], 0.0, bent.memory[l], 0.0)
-        kept = 0.5 * (told[0] + state.law[4, l]) * turned
-        if laws.remembers[l]:
+        felt = 0.5 * (told[0] + state.law[4, l]) * turned
+        if not laws.remembers[l]:
+            kept = _integral(laws.address[l], values, state.connection[0, e], turned)
+            made += kept - felt
+        else:
             pressed = 0.5 * bent.memory[l] * state.law[1, l] * (told[1] - state.law[4, l])
-            kept = 0.5 * told[1] * bent.memory[l] ** 2 - state.law[3, l]
+            felt = kept = 0.5 * told[1] * bent.memory[l] ** 2 - state.law[3, l]
             beside += pressed
         ledger[Entry.WORKED] += beside
         ledger[Entry.THROUGHPUT] += abs(beside)
-        ledger[Entry.RUBBED] += mean * turned + beside - kept
+        ledger[Entry.RUBBED] += mean * turned + beside - felt
         state.law[0, l], state.law[1, l], state.law[2, l] = bent.torque[l], bent.memory[l], bent.load[l]
         state.law[3, l] += kept
         state.law[4, l] = told[1] if laws.remembers[l] else told[0]
+    return made
 
 
 @uncounted()
@@ -142,7 +163,7 @@ def book(plan: Plan, state: State, w: Work, h: float) -> None:
     else:
         ledger[Entry.STRUCK] += struck
     if w.bent.torque.size:
-        _rubbed(plan.laws, w.bent, w.now, state, h, ledger)
+        made += _rubbed(plan.laws, w.bent, w.now, state, h, ledger)
     if plan.spinning:
         more = w.driving.speeds[3] - state.reference[1]
         _stiffened(plan.constants.centrifugal, more, w.now.twist, state.connection, ledger)

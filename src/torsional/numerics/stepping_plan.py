@@ -166,6 +166,13 @@ def mass_matrix(equations: Equations) -> Array:
     return np.asarray((v.T * equations.inertia) @ v)
 
 
+def matrix_of(masses: Masses) -> Array:
+    """M (n, n) again."""
+    M = np.diag(masses.diagonal)
+    M[masses.above_row, masses.above_column] = M[masses.above_column, masses.above_row] = masses.above
+    return M
+
+
 def _refuse(equations: Equations) -> None:
     """Numbers that would only come back as numbers that are none."""
     if equations.coordinates < 1:
@@ -174,6 +181,7 @@ def _refuse(equations: Equations) -> None:
         "inertia": (equations.inertia,),
         "connections": tuple(equations.connected),
         "sources": tuple(equations.driven),
+        "governors": (equations.governed.proportional, equations.governed.integral),
         "frame": (equations.frame_time, equations.frame_value),
     }
     for where, values in groups.items():

@@ -11,7 +11,7 @@ from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.stepping_ledger import stored
-from torsional.numerics.stepping_plan import Laws, Plan, dense
+from torsional.numerics.stepping_plan import Laws, Plan, dense, matrix_of
 from torsional.numerics.stepping_state import Count, Entry, State
 from torsional.numerics.uncounted import uncounted
 
@@ -141,8 +141,7 @@ def _at_rest(laws: Laws, values: Array, connection: Array, law: Array) -> None:
 def _accelerate(plan: Plan, state: State, weights: Array, tangent: tuple[Array, Array], time: float) -> None:
     """q̈ from M, or where M is singular from the matrix of a short step."""
     masses, driven = plan.masses, plan.outside.driven
-    M = np.diag(masses.diagonal)
-    M[masses.above_row, masses.above_column] = M[masses.above_column, masses.above_row] = masses.above
+    M = matrix_of(masses)
     external, inertia = _external(plan, state, time)
     cranks = dense(driven.crank_rows, len(M))
     heavy = M + (cranks.T * inertia) @ cranks
