@@ -18,6 +18,7 @@ from torsional.solvers.periodic.states import states
 from torsional.studies.claims.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
 from torsional.studies.claims.base import Figure, Finding, claim, shown
 from torsional.studies.claims.motions import over_speed
+from torsional.studies.claims.settling import Stepped
 from torsional.studies.claims.strongest import crest
 from torsional.studies.claims.trucks import Trucks, joined, replaced
 
@@ -35,6 +36,10 @@ AROUND = (600 * RPM, 1000 * RPM)
 """Speeds among which the resonance is sought."""
 MOST = 600.0
 """Largest friction torque [Nm] that is tried."""
+TIMED, NEARBY = (30.0, 90.0, 150.0), np.array([-6.0, 0.0, 6.0]) * RPM
+"""Friction torques [Nm] that are asked by time steps too, and at which speeds about the resonance [rad/s]."""
+CYCLES, ALIKE = 16, 0.03
+"""Periods of the firing over which a power is taken; how far time steps and harmonic balance may be apart."""
 LEAST = 1.0
 """Friction torque [Nm] that stands for a clutch without a washer."""
 LIMITS, HIGHER = (1200.0, 1500.0, 1800.0), (2500.0, 3000.0, 3500.0)
@@ -42,6 +47,12 @@ LIMITS, HIGHER = (1200.0, 1500.0, 1800.0), (2500.0, 3000.0, 3500.0)
 CONDITION = (
     "mean torque 60 % of the peak, top gear; firing order's acceleration at the gearbox input, half peak-to-peak; a "
     "washer of 100 kNm/rad beside the clutch damper"
+)
+NAMES = (
+    "largest amplitude [rad/s²]",
+    "amplitude at 1500 rpm [rad/s²]",
+    "friction power at the resonance [W]",
+    "friction power at 1500 rpm [W]",
 )
 MECHANISM = (
     "where the clutch twists much the washer slips and takes energy out of the resonance; where it twists little the "
@@ -115,35 +126,65 @@ def answered(model: Model, speed: tuple[float, float]) -> Curve:
     )
 
 
+def stepped(model: Model, speed: float) -> tuple[float, float]:
+    """Amplitude [rad/s²] and power [W] by time steps: the firing order at the input in the motion that a run from
+    equilibrium settles on, and friction in its ledger of energy."""
+    order, line = main_order(model), Stepped.of(model, speed, mean_torque(model), ORDERS)
+    found = line.settled()
+    angle = abs(found.angle.sel(node=model.landmarks.input, order=order).item())
+    return angle * (order * speed) ** 2, line.friction_power(found, CYCLES)
+
+
+def timed(model: Model, resonance: float) -> Array:
+    """By time steps: largest amplitude about the ``resonance`` [rad/s], that at 1500 rpm, the powers there (4,)."""
+    speed = resonance + NEARBY
+    near = Curve(speed, *np.array([stepped(model, float(at)) for at in speed]).T)
+    far, far_power = stepped(model, FAR)
+    return np.array([near.peak[0], far, near.at(near.peak[1], near.power), far_power])
+
+
+def balanced(one: Curve) -> Array:
+    """The same along a curve by harmonic balance."""
+    far, far_power = (one.at(FAR, values) for values in (one.amplitude, one.power))
+    return np.array([one.peak[0], far, one.at(one.peak[1], one.power), far_power])
+
+
 @claim(
     "A5",
     "2.1",
     "Clutch friction limits the resonance of a single mass flywheel, but it costs power and raises vibration far from "
     "the resonance.",
     "over a sweep of the washer's friction torque the largest amplitude falls strictly, the amplitude at 1500 rpm "
-    "rises strictly, and the friction power at the resonance is positive and rises strictly",
+    "rises strictly, and the friction power at the resonance is positive and rises strictly; runs by time steps at "
+    "three of the friction torques tell the same within 3 %",
 )
 def a5(trucks: Trucks) -> Finding:
     model, ends = trucks.smf, (AROUND[0], FAR)
     found = [answered(washed(model, float(torque)), ends) for torque in SWEEP]
-    peak, place = (np.array([one.peak[i] for one in found]) for i in (0, 1))
-    far = np.array([one.at(FAR, one.amplitude) for one in found])
-    power = np.array([one.at(one.peak[1], one.power) for one in found])
-    far_power = np.array([one.at(FAR, one.power) for one in found])
+    told = np.array([balanced(one) for one in found])
+    place = {torque: one.peak[1] for torque, one in zip(map(float, SWEEP), found, strict=True)}
+    steps = np.array([timed(washed(model, torque), place[torque]) for torque in TIMED])
+    off = np.abs(steps / told[[list(SWEEP).index(torque) for torque in TIMED]] - 1)
     bare = at_input(model, np.append(np.arange(*AROUND, RPM), FAR))
     figures: dict[str, Figure] = {
         "friction torque [Nm]": floats(SWEEP),
-        "largest amplitude [rad/s²]": floats(peak),
-        "its speed [rpm]": floats(place / RPM),
-        "amplitude at 1500 rpm [rad/s²]": floats(far),
-        "friction power at the resonance [W]": floats(power),
-        "friction power at 1500 rpm [W]": floats(far_power),
+        **dict(zip(NAMES, map(floats, told.T), strict=True)),
+        "speed of the largest [rpm]": floats(np.array(list(place.values())) / RPM),
         "without washer: largest, and at 1500 rpm [rad/s²]": (float(bare[:-1].max()), float(bare[-1])),
+        "by time steps: friction torque [Nm]": TIMED,
+        **{f"by time steps: {name}": floats(values) for name, values in zip(NAMES, steps.T, strict=True)},
+        "by time steps: largest difference [%]": float(100 * off.max()),
     }
+    good = all(_as_said(values) for values in (told, steps)) and bool(off.max() < ALIKE)
+    peak, far, power, _ = told.T
     values = {"peak": (peak, "acceleration"), "far": (far, "acceleration"), "power": (power, "power")}
     data = sweep("A5", "friction_torque", SWEEP, "torque", **values)
-    good = falling(peak) and rising(far) and rising(power) and bool((power > 0).all())
     return Finding(good, f"{CONDITION}; viscous damping as shipped beside it", figures, MECHANISM, data)
+
+
+def _as_said(told: Array) -> bool:
+    peak, far, power, _ = told.T
+    return falling(peak) and rising(far) and rising(power) and bool((power > 0).all())
 
 
 def needed(model: Model, limit: float, viscous: float) -> float:
