@@ -40,7 +40,7 @@ _HOMES = {
     "varied_response",
     "solvers.run_up": "full_load_response run_up_response",
     "solvers.transient": "CylinderTorques Governor OrderTorques SpeedProfile State TorqueHistory crank_angle_of "
-    "engine_drive orders_in_time steady_map steady_state swept transient windowed_rms",
+    "engine_drive orders_in_time stage_changes steady_map steady_state swept transient windowed_rms",
     "studies.scenarios.run_up": "run_up",
     "studies.scenarios.running": "run_scenario",
     "stamps": "Connection Constraint Mass NormalLoad SpeedSwitch",

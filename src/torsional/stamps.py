@@ -107,6 +107,11 @@ class Swing:
     place: float = 0.0
 
     @property
+    def path_end(self) -> float:
+        """Arc length [m] at which the path ends, as `torsional.absorbers.pendulum.path_end` has it."""
+        return math.pi * self.curvature_radius if self.flattening == 0 else self.curvature_radius / self.flattening
+
+    @property
     def centrifugal_stiffness(self) -> float:
         """m c² n² = m c² (c/ρ0 − 1) [Nms²/rad], which the exact motion replaces."""
         return self.mass * self.distance**2 * (self.distance / self.curvature_radius - 1.0)

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from torsional.absorbers import CentrifugalPendulum
-from torsional.absorbers.pendulum import flattening
+from torsional.absorbers.pendulum import flattening, path_end
 from torsional.components import Inertia
 from torsional.engine import Excitation
 from torsional.numerics.pendulum_path import pendulum_terms, weight_terms
@@ -84,3 +84,13 @@ def test_rotor_and_pendulums_move_by_their_own_equations(path: str, count: int) 
             data.angle.sel(node="rotor").values, told[0] - SPEED * times, atol=40 * step**2 * 1e3
         )
     assert errors[1] < 1e-3 and errors[0] / errors[1] > 20  # second order: 25
+
+
+@pytest.mark.parametrize("path", ["circular", "cycloid", "tautochrone"])
+def test_at_standstill_a_pendulum_swings_between_the_ends_of_its_path(path: str) -> None:
+    line = rotor(path=path)
+    start = State.at_rest(line).moved(0.0, np.array([0.0, 20.0]))
+    data = transient(line, (), 0.2, start, speed=0.0)
+    arc = DISTANCE * data.twist.sel(element="pendulum.suspension").values
+    assert data.attrs["status"] == "complete"
+    assert 0.9 * path_end(path, ORDER, DISTANCE) < np.abs(arc).max() < path_end(path, ORDER, DISTANCE)  # type: ignore[arg-type]

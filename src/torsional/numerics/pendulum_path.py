@@ -13,12 +13,15 @@ import math
 
 from torsional.numerics.uncounted import uncounted
 
+END = 1.0 - 1e-9
+"""Share of the way to the cusp up to which a path has a direction."""
+
 Path = tuple[float, float, float, float, float]
 
 
 @uncounted()
 def path_at(curvature_radius: float, flattening: float, distance: float, arc: float) -> Path:
-    """X, Y [m], X', −Y' [-] and the curvature 1/ρ [1/m] at arc length s [m]; not a number beyond the path's end.
+    """X, Y [m], X', −Y' [-] and the curvature 1/ρ [1/m] at arc length s [m]; beyond the path's end those of the end.
 
     ``curvature_radius`` ρ0 [m] at rest, ``flattening`` λ, ``distance`` c [m] of the mass from the axis at rest.
 
@@ -35,7 +38,7 @@ def path_at(curvature_radius: float, flattening: float, distance: float, arc: fl
             math.sin(turned),
             1 / rho,
         )
-    u = math.asin(lam * arc / rho)
+    u = math.asin(min(max(lam * arc / rho, -END), END))
     more, less = 1.0 / lam + 1.0, 1.0 / lam - 1.0
     # ∫ cos(u/λ) cos u du and ∫ sin(u/λ) cos u du; with λ = 1 the second terms are u and 0
     along = math.sin(more * u) / more + (math.sin(less * u) / less if less > 1e-9 else u)

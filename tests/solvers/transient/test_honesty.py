@@ -11,7 +11,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.laws import Contacts
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import State, transient
+from torsional.solvers.transient import Governor, State, TorqueHistory, transient
 from torsional.system import assemble
 
 DISC = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 100.0)}))
@@ -44,3 +44,37 @@ def test_a_stop_that_the_step_cannot_follow_is_told(settings: dict[str, object])
     assert "stops" in coarse.attrs["guarded"] and "took away" in coarse.attrs["energy_error"]
     assert abs(fine.angular_velocity.values[-1, 0]) == pytest.approx(1.0, abs=3e-5)
     assert not {"guarded", "energy_error", "refined"} & set(fine.attrs)
+
+
+def test_a_pulse_shorter_than_the_step_and_a_chattering_governor_are_told() -> None:
+    free = assemble(Powertrain({"disc": Inertia(0.01)}))
+    pulse = TorqueHistory("disc", (0.0, 0.00203, 0.002055, 0.00208), (0.0, 0.0, 4e4, 0.0))
+    assert "2.5e-05 s" in transient(free, pulse, 0.01, "rest", speed=0.0).attrs["unresolved"]
+    assert "unresolved" not in transient(free, pulse, 0.01, "rest", speed=0.0, step=2.5e-5).attrs
+    for gain, told in ((50.0, False), (250.0, True)):
+        governor = Governor("disc", 1.0, acts_on="disc", proportional=gain, low=-1e3, high=1e3)
+        assert ("restless" in transient(free, governor, 0.01, "rest", speed=0.0).attrs) is told
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"reference_time": -0.1},
+        {"reference_time": float("nan")},
+        {"angle_error": float("nan")},
+        {"output": -1.0},
+        {"output": float("inf")},
+        {"tolerance": float("nan")},
+        {"step": 0.0},
+    ],
+    ids=str,
+)
+def test_settings_without_meaning_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(ModelError):
+        transient(DISC, PUSH, 0.01, "rest", **wrong)  # type: ignore[arg-type]
+
+
+def test_runs_end_where_they_should_and_never_beyond_numbers() -> None:
+    assert transient(DISC, PUSH, 0.010004, "rest").attrs["end_time"] == pytest.approx(0.010004, rel=1e-12)
+    with pytest.raises(ModelError, match="beyond all numbers"):
+        transient(DISC, PUSH, 0.01, State.at_rest(DISC).moved(0.0, [1e160]))

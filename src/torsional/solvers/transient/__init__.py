@@ -2,6 +2,7 @@
 
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.drives import Governor, OrderTorques, TorqueHistory
+from torsional.solvers.transient.events import stage_changes
 from torsional.solvers.transient.orders import crank_angle_of, orders_in_time, windowed_rms
 from torsional.solvers.transient.run import transient
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -19,6 +20,7 @@ __all__ = [
     "crank_angle_of",
     "engine_drive",
     "orders_in_time",
+    "stage_changes",
     "steady_map",
     "steady_state",
     "swept",

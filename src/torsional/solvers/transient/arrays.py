@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from torsional.errors import ModelError, nearest
-from torsional.laws import HingeRows, Law, hinge_rows
+from torsional.laws import Contacts, HingeRows, Law, hinge_rows
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.stepping_data import Connected, Driven, Rows, rows_of
 from torsional.stamps import NormalLoad
@@ -17,6 +17,8 @@ from torsional.system import Connections, System
 
 ROUNDING = 1e-12
 GRAVITY = 9.80665
+NEARLY, BOUNCING = 0.95, 2000.0
+"""Share of a path at which a pendulum without stops is stopped, and by a contact of what rate [rad/s]."""
 _NONE = HingeRows(0.0, *(np.zeros(0),) * 4)
 
 
@@ -43,7 +45,7 @@ def connected(system: System, levels: Mapping[str, int] | None = None) -> Connec
     """
     c = system.connections
     _refuse_loss(c)
-    hinges = [hinge_rows(law) for law in c.laws]
+    hinges = [hinge_rows(law) for law in _stopped(c)]
     bent = [law if rows is None else None for law, rows in zip(c.laws, hinges, strict=True)]
     rows = [_NONE if found is None else found for found in hinges]
     shares = [_shares(c, name, load, bent) for name, load in zip(c.names, c.loads, strict=True)]
@@ -96,6 +98,17 @@ def with_pendulums(driven: Driven, system: System, gravity: float = GRAVITY) -> 
         table.append((swing.mass, swing.distance, *path, float(carrier.sum()), weight))
     cranks = np.vstack([_dense(driven.crank_rows, system.T.shape[1]), *rows])
     return driven._replace(crank_rows=rows_of(cranks), pendulums=np.array(table))
+
+
+def _stopped(c: Connections) -> list[Law | None]:
+    """The laws, and for pendulums without stops a soft end of the path, which they meet when nothing spins them."""
+    laws = list(c.laws)
+    for i, swing in enumerate(c.swings):
+        if swing is not None and laws[i] is None:
+            reach = NEARLY * swing.path_end / swing.distance
+            stiffness = (BOUNCING**2) * swing.mass * swing.distance**2
+            laws[i] = Contacts.between(-reach, reach, stiffness, 1.0 / BOUNCING)
+    return laws
 
 
 def _swung(system: System) -> Array:

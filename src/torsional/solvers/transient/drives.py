@@ -127,6 +127,9 @@ class Governor:
     high: float = np.inf
 
     def __post_init__(self) -> None:
+        for name in ("proportional", "integral"):
+            if not np.isfinite(getattr(self, name)):
+                raise ModelError("must be finite", where=f"governor.{name}", found=f"{getattr(self, name)}")
         if not self.low < self.high:
             found = f"{self.low:g} to {self.high:g}"
             raise ModelError("the governor's range goes from a lower to a higher value", where="governor", found=found)

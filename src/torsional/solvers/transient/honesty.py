@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from torsional.solvers.transient.marching import Accuracy, Marched, method_share
 from torsional.solvers.transient.problem import Problem
 
@@ -16,7 +18,7 @@ def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str
     """``guarded`` and ``energy_error`` in words, where there is something to say."""
     if accuracy.method == "explicit":
         return {}
-    said = {}
+    said = _unresolved(problem, accuracy.step) | _restless(problem, accuracy.step)
     hinges, names = problem.plan.hinges, problem.system.connections.names
     stiff = accuracy.step * hinges.pace > STIFF
     raised = stiff & (hinges.contact_time < 0.5 * accuracy.step)
@@ -34,3 +36,28 @@ def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str
             f"the time steps {did} {abs(share):.2g} of the energy that passed through; take a smaller step"
         )
     return said
+
+
+def _unresolved(problem: Problem, step: float) -> dict[str, str]:
+    """Levels over time that change faster than the step."""
+    driven = problem.equations.driven
+    for first, last in zip(driven.level_start[:-1], driven.level_start[1:], strict=True):
+        spacing = np.diff(np.unique(driven.level_time[first:last]))
+        if spacing.size and spacing.min() < step * (1 - 1e-9):
+            at = driven.level_time[first:last][int(spacing.argmin())]
+            lasts = f"a value given over time changes within {spacing.min():.3g} s"
+            return {"unresolved": f"{lasts} near {at:.6g} s, less than the step of {step:.3g} s; take a smaller one"}
+    return {}
+
+
+def _restless(problem: Problem, step: float) -> dict[str, str]:
+    """Governors of a torque that corrects the speed by more than its error within a step."""
+    for governing in problem.acting.governors:
+        if governing.act is None:
+            continue
+        answer = governing.sense @ np.linalg.lstsq(problem.system.M, governing.act, rcond=None)[0]
+        gain = float(governing.proportional * step * answer)
+        if gain > 1.0:
+            told = f"a governor's proportional share corrects {gain:.2g} times the error of the speed in one step"
+            return {"restless": f"{told} of {step:.3g} s, and chatters; take a smaller step or share"}
+    return {}

@@ -51,6 +51,10 @@ class Accuracy:
         if self.method not in METHODS:
             allowed = ", ".join(METHODS)
             raise ModelError("unknown method", where="method", found=self.method, allowed=allowed)
+        if not 0 <= self.angle_error < np.inf:
+            raise ModelError("the error of an angle is finite", where="angle_error", found=f"{self.angle_error:g} rad")
+        if not 0 < self.tolerance < 1:
+            raise ModelError("the tolerance lies between 0 and 1", where="tolerance", found=f"{self.tolerance:g}")
         _ = self.family
 
     @property
@@ -105,6 +109,8 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
         standing=told.state,
         step=accuracy.step,
     )
+    energy = records.ledger[:, _ENTRIES]
+    status = told.status if np.isfinite(energy).all() else Status.NOT_FINITE
     return Marched(
         time=records.time,
         angle=records.q,
@@ -113,11 +119,11 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
         torque=records.torque,
         memory=memory,
         load=load,
-        energy=records.ledger[:, _ENTRIES],
+        energy=energy,
         end=end,
         steps=told.count(Count.STEPS) - int(own.counts[Count.STEPS]),
         iterations=told.count(Count.SOLVES) - int(own.counts[Count.SOLVES]),
-        status=_WORDS[told.status],
+        status=_WORDS[status],
     )
 
 

@@ -52,6 +52,9 @@ class Problem:
         reference_time: float = np.inf,
     ) -> Problem:
         """What the arguments of `transient` mean."""
+        if not reference_time > 0:
+            found, allowed = f"{reference_time:g} s", "a time above zero, or infinite"
+            raise ModelError("nothing follows so fast", where="reference_time", found=found, allowed=allowed)
         profile = as_speed(only_speed(drives) if speed is None else speed)
         acting = held(all_acting(drives, system, profile), system, hold)
         given = {name: level_of(*knots, f"levels.{name}") for name, knots in (levels or {}).items()}

@@ -93,6 +93,7 @@ def transient(
     kept(keep, system.nodes, system.connections.names)
     state = starting(start, system, problem.acting, hold, problem.start_speed)
     notes = {"switched": words} if (words := _switching(problem)) else {}
+    step = _fitting(step, time)
     run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)
     moments = wanted(output, time)
     told = run.over(state, time, moments) if isinstance(moments, float) else run.at(state, time, moments)
@@ -178,10 +179,19 @@ class Run:
             self.progress(reached, end, simulated / max(clock.perf_counter() - begun, 1e-9))
 
 
+def _fitting(step: float, time: float) -> float:
+    """The step, or the next smaller one that ends where the run does."""
+    steps = time / step if 0 < step < np.inf else 1.0
+    return step if abs(steps - round(steps)) <= 1e-9 * steps and round(steps) else time / math.ceil(steps)
+
+
 def wanted(output: ArrayLike, time: float) -> float | Array:
     """The interval of samples, or the moments [s] that are asked for, rising; ModelError for moments beyond the run."""
     if np.ndim(output) == 0:
-        return float(np.asarray(output, dtype=float))
+        interval = float(np.asarray(output, dtype=float))
+        if not 0 <= interval < np.inf:
+            raise ModelError("the interval of samples is positive", where="output", found=f"{interval:g} s")
+        return interval
     times = np.unique(np.asarray(output, dtype=float))
     if not times.size or not (times[0] >= 0 and times[-1] <= time * (1 + 1e-12)):
         found, allowed = (f"{times[0]:g} to {times[-1]:g} s" if times.size else "none"), f"0 to {time:g} s"
