@@ -9,7 +9,6 @@ from tests.numerics.test_stepping import MEMBERS, order_of, wall
 from tests.numerics.test_stepping_energy import BRISTLES, DRIVE, turning, with_law
 from tests.validation import dmf_lcp
 
-from torsional.errors import ModelError
 from torsional.laws import Jenkins, Stribeck
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.complementarity_step import OneSided, Step, step_problem
@@ -63,12 +62,6 @@ def test_an_explicit_integrator_finds_the_same_motion(name: str) -> None:
         errors.append(np.abs(found.records.q - exact).max())
     assert errors[-1] <= 2e-4 * np.abs(exact).max()
     assert order_of(np.array(errors)) >= least
-
-
-def test_a_step_too_long_for_a_governor_is_refused() -> None:
-    plan = prepare(governed())
-    with pytest.raises(ModelError, match=r"step: the time step is too long for a governor.*up to 0\.1 s"):
-        march(plan, MEMBERS["newmark"], 0.2, 1, begin(plan, 0.0, 0.0))
 
 
 # --- the dual mass flywheel ---

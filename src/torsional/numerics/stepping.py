@@ -14,12 +14,9 @@ from torsional.errors import ModelError
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.stepping_march import new_work, run
-from torsional.numerics.stepping_plan import Plan, dense, matrix_of
+from torsional.numerics.stepping_plan import Plan
 from torsional.numerics.stepping_start import begin
 from torsional.numerics.stepping_state import Count, Entry, March, Records, Settings, State, Status
-
-STEADY = 0.5
-"""Share of a governor's error that it may undo in a step."""
 
 __all__ = ["Count", "Entry", "March", "Settings", "State", "Status", "begin", "march", "produced"]
 
@@ -39,13 +36,12 @@ def march(
 
     Recorded are the state at the start and after every ``stride`` steps, or after the steps listed in ``at``, rising;
     0 is the start.  A march in pieces, each from the state that the one before ended with, gives the same bits as one
-    in a single call.  Raises ModelError for a step that is not positive or too long for a governor, and for steps to
-    record beyond the last.
+    in a single call.  Governors act on the speed predicted for a step's end: one with k_p h act·M⁻¹·sense
+    beyond 1 chatters.  Raises ModelError for a step that is not positive and for steps to record beyond the last.
     """
     chosen = np.arange(0, steps + 1, max(stride, 1)) if at is None else np.asarray(at)
     places = np.ascontiguousarray(chosen, dtype=np.int64)
     _check(step, steps, places)
-    _check_governors(plan, step)
     told = Settings() if settings is None else settings
     moved, records = state.copied(), _records(plan, places.size)
     numbers = (method.alpha_m, method.alpha_f, method.beta, method.gamma)
@@ -86,21 +82,6 @@ def _check(step: float, steps: int, places: IntArray) -> None:
         raise ModelError("steps to record must rise from 0 on", where="at", found=f"{places[:5].tolist()}")
     if places.size and places[-1] > steps:
         raise ModelError("a step to record lies beyond the last", where="at", found=str(places[-1]), allowed=str(steps))
-
-
-def _check_governors(plan: Plan, step: float) -> None:
-    """A governor acts on the speed that is predicted: from k_p h act·M⁻¹·sense = 1 on that makes it chatter."""
-    governed, n = plan.outside.governed, plan.tape.node.size
-    if not governed.proportional.size:
-        return
-    mobility = np.linalg.pinv(matrix_of(plan.masses)) @ dense(governed.sense, n).T
-    gain = np.abs(governed.proportional * np.einsum("gi,ig->g", dense(governed.act, n), mobility))
-    if (gain * step > STEADY).any():
-        found, allowed = f"{step:g} s", f"up to {STEADY / gain.max():.3g} s"
-        remedy = "take shorter steps or a smaller proportional gain"
-        raise ModelError(
-            "the time step is too long for a governor", where="step", found=found, allowed=allowed, remedy=remedy
-        )
 
 
 def _records(plan: Plan, count: int) -> Records:
