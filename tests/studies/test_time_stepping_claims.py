@@ -79,3 +79,11 @@ def test_e2(outcomes: Mapping[str, Outcome]) -> None:
     at = list(STEPS).index(5e-4)
     assert float(told.error_100[at]) > 1.0
     assert max(float(told[f"error_{round(100 * radius)}"][at]) for radius in RADII[1:]) < 0.02
+
+
+def test_e2_says_where_nothing_is_gained(outcomes: Mapping[str, Outcome]) -> None:
+    """Rattling springs part trajectories whatever the step; springs that stay closed need no damping."""
+    finding = outcomes["E2"].finding
+    elsewhere = {name: value for name, value in finding.figures.items() if name.startswith("gain at")}
+    assert len(elsewhere) == 3 and max(elsewhere.values()) < 3.0
+    assert "700 rpm, 1000 Nm" in finding.reason
