@@ -193,7 +193,7 @@ class IdlePulse(Scenario):
     pulse: AnyTorque | None = Field(None, description="torque; default: a fifth of full load")
     node: str = Field("", description="on which it acts; default: the crankshaft", max_length=64)
     at: Moment = 1.0
-    length: Time = Field(0.033, description="of the pulse")
+    length: Time = Field(0.02, description="of the pulse")
 
     def moments(self) -> list[tuple[str, float]]:
         """The pulse."""

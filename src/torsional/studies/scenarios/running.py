@@ -5,17 +5,22 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError
 from torsional.files.scenario_blocks import Scenario
 from torsional.model import Model
 from torsional.solvers.transient.run import Progress, transient
+from torsional.solvers.transient.speed_profile import as_speed
 from torsional.studies.scenarios.figures import read_off, scheduled
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.plan import Plan
 from torsional.system import System, assemble
+from torsional.units import show
 
+FINEST, SLOWEST = 0.01, 60.0
+"""Share of a turn of the crank that a step may take, at its speed or at this one [rad/s] where it is slower."""
 STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
@@ -33,6 +38,7 @@ def run_scenario(scenario: Scenario, model: Model, progress: Progress | None = N
 
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     """The run of a plan."""
+    _refuse_coarse(plan)
     system = assemble(plan.line)
     step, settling = plan.step or STEP, plan.settling
     run = transient(
@@ -58,6 +64,17 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     told = {key: json.dumps(names) for key, names in listed.items()}
     figures = with_figures(run, system, (*plan.springs, *plan.watched))
     return scheduled(figures, plan.shown).assign_attrs({**named, **told})
+
+
+def _refuse_coarse(plan: Plan) -> None:
+    """Refuse steps over which the crank turns too far for its torques to be seen."""
+    most = FINEST * 2 * np.pi / max(*as_speed(plan.speed).range, SLOWEST)
+    if plan.step is not None and plan.step > most:
+        told = {
+            "found": show(plan.step, "time"),
+            "allowed": f"a hundredth of a turn of the crank, {show(most, 'time')}",
+        }
+        raise ModelError("the step is too large", where="step", **told)
 
 
 def from_zero(run: xr.Dataset) -> xr.Dataset:

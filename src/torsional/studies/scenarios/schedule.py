@@ -15,6 +15,8 @@ from torsional.units import show
 Knots = tuple[tuple[float, ...], tuple[float, ...]]
 """Times [s] and values, straight lines between them; a jump is two knots at one time."""
 
+KEEPING = (60.0, 0.5)
+"""Droop [rad/s] and reset time [s] of the governor of an idling engine."""
 NEVER = -1e4
 """A speed [rad/s] that is wanted while a governor shall give nothing."""
 
@@ -52,6 +54,12 @@ def speed_governor(block: SpeedGovernor, crank: str, wanted: float, start: float
     knots = SpeedProfile((0.0, start, start), (NEVER, NEVER, wanted)) if start > 0 else SpeedProfile.constant(wanted)
     gain = 1.0 / block.droop
     return Governor(crank, knots, proportional=gain, integral=gain / block.reset, low=0.0, high=1.0)
+
+
+def idle_keeper(crank: str, wanted: float, share: float) -> Governor:
+    """What trims the heat of an idling engine, ``share`` of its most, so slowly that it does not follow vibrations."""
+    gain = 1.0 / KEEPING[0]
+    return Governor(crank, wanted, proportional=gain, integral=gain / KEEPING[1], low=-share, high=1.0 - share)
 
 
 def fuel_cut(crank: str, below: float, width: float) -> Governor:

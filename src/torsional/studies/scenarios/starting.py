@@ -17,6 +17,7 @@ from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import (
     cylinders,
     heat_for,
+    idle_keeper,
     pulse,
     speed_governor,
     starter_motor,
@@ -49,16 +50,18 @@ def engine_stop(block: EngineStop, model: Model) -> Plan:
 
 
 def idle_pulse(block: IdlePulse, model: Model) -> Plan:
-    """Idle without load, a torque of some milliseconds on a node."""
+    """Idle without load, a torque of some milliseconds on a node, and a slow governor that brings the speed back."""
     speed, line, node = block.speed or model.operation.idle, in_neutral(model), block.node or crank_of(model)
     if node not in line.nodes:
         told = {"found": f"'{node}'", "remedy": nearest(node, line.nodes)}
         raise ModelError("there is no such node in neutral", where="node", **told)
-    motor = cylinders(model, speed, *_heat(model, speed, np.inf))
+    most, (share, _) = heat_for(model, speed, [0.0, sizes.torque(model, None, 0.4, "operation.idle")])
+    motor = cylinders(model, speed, most, ((0.0,), (share,)))
+    back = idle_keeper(crank_of(model), speed, share)
     height = sizes.torque(model, block.pulse, 0.2, "pulse")
     pushed = torque_pulse(node, block.at, block.length, height)
     marks = {"pulse": (pulse(block.at, block.length, height), "torque")}
-    return Plan(**_alone(block, model, line), **_idling(model), drives=(motor, pushed), speed=speed, shown=marks)
+    return Plan(**_alone(block, model, line), **_idling(model), drives=(motor, pushed, back), speed=speed, shown=marks)
 
 
 def resting(motor: CylinderTorques) -> float:
@@ -78,8 +81,7 @@ def resting(motor: CylinderTorques) -> float:
 def _heat(model: Model, speed: float, until: float) -> tuple[float, tuple[tuple[float, ...], tuple[float, ...]]]:
     """Torque and heat of an engine without load, up to a moment [s]."""
     most, (share,) = heat_for(model, speed, [0.0])
-    knots = ((0.0,), (share,)) if np.isinf(until) else ((0.0, until, until), (share, share, 0.0))
-    return most, knots
+    return most, ((0.0, until, until), (share, share, 0.0))
 
 
 def _idling(model: Model) -> dict[str, Any]:

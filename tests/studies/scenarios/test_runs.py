@@ -1,0 +1,79 @@
+"""Scenarios in time against what mechanics says beforehand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from torsional import ModelError, load_model, load_scenario, run_scenario, run_up
+from torsional.model import Model
+from torsional.solvers.transient import SpeedProfile
+
+ROOT = Path(__file__).parents[3]
+RPM = np.pi / 30
+
+
+@pytest.fixture(scope="module")
+def truck() -> Model:
+    return load_model(ROOT / "examples" / "truck_dmf.yaml")
+
+
+def test_a_pulse_at_idle_leaves_a_sub_harmonic_in_springs_with_lash(truck: Model) -> None:
+    """Before it the springs are not met; after it the twist repeats itself after several firings, not after one."""
+    run = run_scenario(load_scenario(ROOT / "examples" / "scenarios" / "idle_pulse.yaml"), truck)
+    twist = run.twist.sel(element="dmf")
+    before, after = twist.sel(time=slice(0.5, 0.95)), twist.sel(time=slice(2.5, None)).values
+    assert float(before.max() - before.min()) < np.deg2rad(2.0)
+    assert np.ptp(after) > np.deg2rad(3.0)
+    firing = 2 * np.pi / (3 * float(run.angular_velocity.sel(node="primary", time=slice(2.5, None)).mean()))
+    step = float(run.time[1] - run.time[0])
+
+    def gap(count: int) -> float:
+        """How far the twist is from itself after some firings, over its swing."""
+        shift = round(count * firing / step)
+        return float(np.abs(after[shift:] - after[:-shift]).max() / np.ptp(after))
+
+    repeats = [count for count in range(1, 7) if gap(count) < 0.1]
+    assert repeats and repeats[0] > 1
+
+
+def test_sliding_linings_carry_their_capacity(truck: Model) -> None:
+    settings = ["clutch.within=1 s", "clutch.engages=0 s", "duration=0.6 s", "speed=1400 rpm", "gear=6"]
+    run = run_scenario(load_scenario("clutch_engagement", settings), truck)
+    slip = run.angular_velocity.sel(node="secondary") - run.angular_velocity.sel(node="clutch_lining")
+    sliding = (slip.values > 5.0) & (run.time.values > 0.05)
+    assert sliding.sum() > 100
+    torque = run.torque.sel(element="clutch_linings").values[sliding]
+    # 3500 Nm in a second; what the bristles lag behind the growing force is below a per cent
+    assert torque == pytest.approx(3500 * run.time.values[sliding], rel=0.02)
+
+
+def test_energy_of_a_stop_is_lost_to_the_last_joule(truck: Model) -> None:
+    """Kinetic energy at idle, friction and pumping: what dampers lose is part of it, and the method makes nothing."""
+    run = run_scenario(load_scenario("engine_stop"), truck)
+    energy = {str(name): float(run.energy.sel(share=name)[-1]) for name in run.share.values}
+    assert abs(energy["method"]) < 1e-4 * energy["dampers"]
+    assert float(run.angular_velocity.sel(node="primary").max()) == pytest.approx(600 * RPM, rel=0.1)
+    assert abs(float(run.angular_velocity.sel(node="primary")[-1])) < 250 * RPM
+
+
+def test_a_run_up_begins_in_steady_vibration(truck: Model) -> None:
+    """At one speed nothing changes from cycle to cycle."""
+    speed = 900 * RPM
+    run = run_up(truck, SpeedProfile.constant(speed), 1200.0, 1.0, "12")
+    torque = run.torque.sel(element="dmf")
+    cycle = 4 * np.pi / speed
+    swings = [np.ptp(torque.sel(time=slice(t, t + cycle)).values) for t in (0.0, 0.4, 0.8)]
+    assert swings == pytest.approx([swings[-1]] * 3, rel=0.05)
+    assert float(run.energy.sel(share="dampers")[0]) == 0.0
+
+
+def test_steps_that_are_too_large_are_refused(truck: Model) -> None:
+    short = ["duration=0.6 s", "at=0.1 s"]
+    with pytest.raises(ModelError, match=r"step: the step is too large; found 0.005 s; allowed: a hundredth of a turn"):
+        run_scenario(load_scenario("tip_in", [*short, "step=5 ms"]), truck)
+    coarse, fine = (run_scenario(load_scenario("tip_in", [*short, f"step={h} ms"]), truck) for h in (0.5, 0.1))
+    peaks = [float(run.torque_highest.sel(element="dmf")) for run in (coarse, fine)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.01)
