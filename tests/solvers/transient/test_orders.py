@@ -81,6 +81,16 @@ def test_a_spiral_is_not_taken_for_several_periods() -> None:
     assert repeats(np.stack([still.real, still.imag], axis=1), 1.0, 8, 1e-6)[0] == 1
 
 
+def test_an_alternation_that_dies_out_is_not_taken_for_two_periods() -> None:
+    """A multiplier of −0.99: after two periods it is within 2 % of its distance to the end, which is that of one."""
+    points = 0.1 * (-0.99) ** np.arange(2000)[:, None]
+    told = [repeats(points[:count], 1.0, 8, 1e-5)[0] for count in range(40, 2000, 32)]
+    assert set(told) == {0, 1} and told == sorted(told)
+    assert told[30] == 1  # 0.1·0.99¹⁰⁰⁰ = 4e-6
+    lasting = points + 0.003 * np.array([1.0, -1.0] * 1000)[:, None]
+    assert repeats(lasting[:1200], 1.0, 8, 1e-5)[0] == 2
+
+
 @pytest.mark.parametrize("period", [1, 2, 3, 5, 8])
 def test_periods_are_counted(period: int) -> None:
     points = np.tile(np.random.default_rng(1).standard_normal((period, 3)), (20, 1))

@@ -14,6 +14,8 @@ THIN = 1.3
 """Largest dimension of stroboscopic points that lie on a closed curve."""
 APART = 30.0
 """How much better a motion repeats itself after its own period than after fewer."""
+NOTHING = 1e-3
+"""Share of the tolerance below which a difference is taken for none."""
 FEWEST = 200
 """Points below which a dimension means nothing."""
 CLOSE, FAR = 0.01, 0.1
@@ -50,7 +52,8 @@ def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple
     left of the difference over the motion's ``size``.
 
     The last ``longest`` points must all agree with those k before them, and much better than with those of fewer
-    periods before: what still dies away in a spiral is near itself after some turns.
+    periods before; and so must those still to come if the difference goes on to fall as it does.  What dies away
+    slowly, alternating or in a spiral, is near itself after some turns, but has far to go.
 
     >>> repeats(np.array([[1.0], [2.0]] * 8), 1.0, 4, 1e-9)
     (2, 0.0)
@@ -59,12 +62,26 @@ def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple
     for k in range(1, longest + 1):
         if len(points) < longest + k:
             break
-        gap = np.sqrt(np.square(points[-longest:] - points[-longest - k : len(points) - k]).sum(axis=1)).max()
-        left = float(gap / size) if size > 0 else 0.0
-        if left <= tolerance and left <= best / APART:
+        left = _left(points, size, longest, k)
+        certain = k == 1 or left <= NOTHING * tolerance
+        if left <= min(tolerance, best / APART) and (certain or _to_come(points, size, longest, k) <= best / APART):
             return k, left
         best = min(best, left)
     return 0, best
+
+
+def _left(points: Array, size: float, longest: int, k: int) -> float:
+    """Largest distance of the last points from those k before, over the motion's size."""
+    gap = np.sqrt(np.square(points[-longest:] - points[-longest - k : len(points) - k]).sum(axis=1)).max()
+    return float(gap / size) if size > 0 else 0.0
+
+
+def _to_come(points: Array, size: float, longest: int, k: int) -> float:
+    """Distance to where the points go if the one from k before falls on by the same ratio; infinite if it does not."""
+    if len(points) < 2 * longest + k:
+        return np.inf
+    now, before = _left(points, size, longest, k), _left(points[:-longest], size, longest, k)
+    return now / (1.0 - (now / before) ** (k / longest)) if now < before else np.inf
 
 
 def dimension(points: Array) -> float:

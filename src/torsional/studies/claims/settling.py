@@ -18,8 +18,8 @@ from torsional.system import System, assemble
 STEP = 5e-5
 """Longest time step [s]: half of it changes no amplitude that the claims ask for by more than 0.1 %."""
 REPEATING = 1e-7
-"""Share of a motion's size within which it must repeat itself: small enough that an alternation that dies out slowly is
-not taken for one of twice the period."""
+"""Share of a motion's size within which it must repeat itself: what dies out slowly, by 1 % a period, has a hundred
+times that to go."""
 
 
 @dataclass(frozen=True, eq=False)
