@@ -22,7 +22,7 @@ def truck() -> Model:
 
 def test_a_pulse_at_idle_leaves_a_sub_harmonic_in_springs_with_lash(truck: Model) -> None:
     """Before it the springs are not met; after it the twist repeats itself after several firings, not after one."""
-    run = run_scenario(load_scenario(ROOT / "examples" / "scenarios" / "idle_pulse.yaml"), truck)
+    run = run_scenario(truck, load_scenario(ROOT / "examples" / "scenarios" / "idle_pulse.yaml"))
     twist = run.twist.sel(element="dmf")
     before, after = twist.sel(time=slice(0.5, 0.95)), twist.sel(time=slice(2.5, None)).values
     assert float(before.max() - before.min()) < np.deg2rad(2.0)
@@ -41,7 +41,7 @@ def test_a_pulse_at_idle_leaves_a_sub_harmonic_in_springs_with_lash(truck: Model
 
 def test_sliding_linings_carry_their_capacity(truck: Model) -> None:
     settings = ["clutch.within=1 s", "clutch.engages=0 s", "duration=0.6 s", "speed=1400 rpm", "gear=6"]
-    run = run_scenario(load_scenario("clutch_engagement", settings), truck)
+    run = run_scenario(truck, load_scenario("clutch_engagement", settings))
     slip = run.angular_velocity.sel(node="secondary") - run.angular_velocity.sel(node="clutch_lining")
     sliding = (slip.values > 5.0) & (run.time.values > 0.05)
     assert sliding.sum() > 100
@@ -52,7 +52,7 @@ def test_sliding_linings_carry_their_capacity(truck: Model) -> None:
 
 def test_energy_of_a_stop_is_lost_to_the_last_joule(truck: Model) -> None:
     """Kinetic energy at idle, friction and pumping: what dampers lose is part of it, and the method makes nothing."""
-    run = run_scenario(load_scenario("engine_stop"), truck)
+    run = run_scenario(truck, load_scenario("engine_stop"))
     energy = {str(name): float(run.energy.sel(share=name)[-1]) for name in run.share.values}
     assert abs(energy["method"]) < 1e-4 * energy["dampers"]
     assert float(run.angular_velocity.sel(node="primary").max()) == pytest.approx(600 * RPM, rel=0.1)
@@ -73,7 +73,18 @@ def test_a_run_up_begins_in_steady_vibration(truck: Model) -> None:
 def test_steps_that_are_too_large_are_refused(truck: Model) -> None:
     short = ["duration=0.6 s", "at=0.1 s"]
     with pytest.raises(ModelError, match=r"step: the step is too large; found 0.005 s; allowed: a hundredth of a turn"):
-        run_scenario(load_scenario("tip_in", [*short, "step=5 ms"]), truck)
-    coarse, fine = (run_scenario(load_scenario("tip_in", [*short, f"step={h} ms"]), truck) for h in (0.5, 0.1))
+        run_scenario(truck, load_scenario("tip_in", [*short, "step=5 ms"]))
+    coarse, fine = (run_scenario(truck, load_scenario("tip_in", [*short, f"step={h} ms"])) for h in (0.5, 0.1))
     peaks = [float(run.torque_highest.sel(element="dmf")) for run in (coarse, fine)]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.01)
+
+
+def test_a_detailed_flywheel_carries_what_the_clutch_does() -> None:
+    """Its springs, tabs and stop have no rows of their own; together they are the torque of the flywheel."""
+    detailed = load_model(ROOT / "examples" / "truck_dmf_arc_spring.yaml")
+    run = run_scenario(load_scenario("tip_out", ["duration=0.3 s", "at=0.25 s", "before=1500 Nm"]), detailed)
+    means = run.torque.sel(element=["dmf", "clutch"], time=slice(0.0, 0.24)).mean("time").values
+    assert means == pytest.approx([1500.0, 1500.0], rel=0.02)
+    told = run.attrs["told"]
+    assert '"dmf"' in told
+    assert "arc_1" not in told

@@ -204,4 +204,5 @@ def _in_gear(block: Scenario, model: Model, line: Powertrain, gear: str, *watche
         "springs": tuple(name for name in marks.springs if name in line.components),
         "watched": tuple(name for name in watched or (marks.clutch,) if name in line.components),
         "gear": gear,
+        "inner": lines.inner_parts(model),
     }

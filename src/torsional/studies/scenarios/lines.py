@@ -62,6 +62,11 @@ def line_of(model: Model, gear: str = "") -> Powertrain:
     return model.detailed().powertrain(gear or None)
 
 
+def inner_parts(model: Model) -> frozenset[str]:
+    """Parts that an absorber has in time alone, in detail."""
+    return frozenset(model.detail) - frozenset(model.components)
+
+
 def in_neutral(model: Model) -> Powertrain:
     """What hangs on the crankshaft while no gear is engaged: all behind the gears is left out."""
     line = line_of(model)

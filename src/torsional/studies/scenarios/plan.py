@@ -33,7 +33,8 @@ class Plan:
     nodes ``lagging`` turn slower than the frame, seen at the engine; ``hold``: the node that takes up the mean load of
     the time zero; ``stuck``: linings that carry their share of it; ``levels`` of normal loads over time.  ``crank``:
     the node of the engine's speed; ``springs``, ``watched``: absorber springs, and further connections, to be drawn;
-    ``shown``: what happens, over time, by its name and quantity.
+    ``shown``: what happens, over time, by its name and quantity; ``inner``: parts of an absorber in detail, which get
+    no row of their own.
     """
 
     title: str
@@ -55,6 +56,7 @@ class Plan:
     shown: Mapping[str, tuple[Knots, str]] = field(default_factory=dict)
     step: float | None = None
     gear: str = ""
+    inner: frozenset[str] = frozenset()
     following: float = FOLLOWING
 
     def started(self, system: System) -> State:

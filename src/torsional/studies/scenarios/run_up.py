@@ -51,5 +51,6 @@ def run_up(
         step=step,
         gear=gear,
         following=math.inf,
+        inner=lines.inner_parts(model),
     )
     return run_plan(plan, progress)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 import xarray as xr
@@ -21,11 +21,13 @@ from torsional.units import show
 
 FINEST, SLOWEST = 0.01, 60.0
 """Share of a turn of the crank that a step may take, at its speed or at this one [rad/s] where it is slower."""
+TABS = ("_secondary_drive", "_secondary_coast")
+"""Ends of the names of tabs by which springs rest on the flywheel that carries the clutch."""
 STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
 
-def run_scenario(scenario: Scenario, model: Model, progress: Progress | None = None) -> xr.Dataset:
+def run_scenario(model: Model, scenario: Scenario, progress: Progress | None = None) -> xr.Dataset:
     """What happens to a model in a scenario: the Dataset of `transient` with the figures of `read_off`.
 
     ``schedule`` (event, time) is what was done; attributes name scenario, gear and what is worth looking at.
@@ -62,7 +64,8 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     named = {"title": plan.title, "gear": plan.gear, "crank": plan.crank}
     listed = {"springs": plan.springs, "watched": plan.watched, "looked_at": plan.nodes}
     told = {key: json.dumps(names) for key, names in listed.items()}
-    figures = with_figures(run, system, (*plan.springs, *plan.watched))
+    run = with_tabs(run, plan)
+    figures = with_figures(run, system, (*plan.springs, *plan.watched), plan.inner)
     return scheduled(figures, plan.shown).assign_attrs({**named, **told})
 
 
@@ -86,10 +89,21 @@ def from_zero(run: xr.Dataset) -> xr.Dataset:
     return kept.assign(energy=kept.energy - kept.energy.isel(time=0)) if not late.all() else run
 
 
-def with_figures(run: xr.Dataset, system: System, first: Sequence[str]) -> xr.Dataset:
-    """The run with what `read_off` adds; ``told`` names the elements worth a row, some ``first``, dampers left out."""
+def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
+    """The run with what the tabs of a detailed dual mass flywheel carry counted as its torque, beside its end stop."""
+    tabs = [name for name in run.element.values if name in plan.inner and str(name).endswith(TABS)]
+    if not tabs or len(plan.springs) != 1:
+        return run
+    whole = run.torque + run.torque.sel(element=tabs).sum("element") * (run.element == plan.springs[0])
+    return run.assign(torque=whole.transpose(*run.torque.dims).assign_attrs(run.torque.attrs))
+
+
+def with_figures(run: xr.Dataset, system: System, first: Sequence[str], inner: Collection[str] = ()) -> xr.Dataset:
+    """The run with what `read_off` adds; ``told`` names the elements worth a row, some ``first``, dampers and ``inner``
+    ones left out."""
     c = system.connections
     laws = dict(zip(c.names, c.laws, strict=True))
     carrying = [name for name, k in zip(c.names, c.stiffness, strict=True) if k > 0 or laws[name] is not None]
-    listed = dict.fromkeys([*(name for name in first if name in c.names), *carrying])
+    outer = [name for name in carrying if name not in inner]
+    listed = dict.fromkeys([*(name for name in first if name in c.names), *outer])
     return read_off(run, laws).assign_attrs(told=json.dumps(list(listed)))

@@ -12,7 +12,7 @@ from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.studies.scenarios import sizes
-from torsional.studies.scenarios.lines import crank_of, in_neutral
+from torsional.studies.scenarios.lines import crank_of, in_neutral, inner_parts
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import (
     cylinders,
@@ -101,4 +101,5 @@ def _alone(block: EngineStart | EngineStop | IdlePulse, model: Model, line: Powe
         "watched": tuple(name for name in (marks.clutch,) if name in line.components),
         "nodes": tuple(node for node in (marks.input,) if node in line.nodes),
         "gear": "neutral",
+        "inner": inner_parts(model),
     }
