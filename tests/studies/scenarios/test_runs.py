@@ -82,7 +82,7 @@ def test_steps_that_are_too_large_are_refused(truck: Model) -> None:
 def test_a_detailed_flywheel_carries_what_the_clutch_does() -> None:
     """Its springs, tabs and stop have no rows of their own; together they are the torque of the flywheel."""
     detailed = load_model(ROOT / "examples" / "truck_dmf_arc_spring.yaml")
-    run = run_scenario(load_scenario("tip_out", ["duration=0.3 s", "at=0.25 s", "before=1500 Nm"]), detailed)
+    run = run_scenario(detailed, load_scenario("tip_out", ["duration=0.3 s", "at=0.25 s", "before=1500 Nm"]))
     means = run.torque.sel(element=["dmf", "clutch"], time=slice(0.0, 0.24)).mean("time").values
     assert means == pytest.approx([1500.0, 1500.0], rel=0.02)
     told = run.attrs["told"]
