@@ -133,6 +133,14 @@ def test_bristles_that_slide_steadily_bear_what_the_curve_tells() -> None:
     assert found.records.torque[-1, 0] == pytest.approx(1.1843397206, rel=1e-9)
 
 
+def test_stiff_bristles_over_long_steps_give_no_energy() -> None:
+    held = equations([1.0], [Link([1.0], 100.0), Link([1.0], law=LuGre(1e8, 1e4, 1.0, 1.5, 0.001))])
+    found = marched(held, 0.0, 1.0, 1.0, 100, MEMBERS["newmark"])
+    energy = found.records.ledger[:, Entry.KINETIC]
+    assert energy.max() <= 1.01 * energy[0] or found.status == Status.PRODUCES
+    assert energy.max() <= 2.0 * energy[0]
+
+
 def test_production_of_a_part_of_a_march() -> None:
     ledger, before = np.zeros((2, len(Entry)))
     ledger[[Entry.MADE, Entry.THROUGHPUT]], before[Entry.MADE] = (-1.0, 100.0), -3.0

@@ -65,6 +65,8 @@ def march(
 def produced(ledger: Array, before: Array | None = None) -> float:
     """Energy that the method made of its own, since the start or since the ledger ``before``, over the throughput.
 
+    Friction that on the whole gave energy is the method's doing as well.
+
     >>> ledger = np.zeros(len(Entry))
     >>> ledger[Entry.MADE], ledger[Entry.THROUGHPUT] = 2.0, 100.0
     >>> produced(ledger)
@@ -72,7 +74,7 @@ def produced(ledger: Array, before: Array | None = None) -> float:
     """
     made, through = float(ledger[Entry.MADE]), float(ledger[Entry.THROUGHPUT])
     lately = made if before is None else made - float(before[Entry.MADE])
-    return max(0.0, made, lately) / through if through > 0.0 else 0.0
+    return max(0.0, made, lately, -float(ledger[Entry.RUBBED])) / through if through > 0.0 else 0.0
 
 
 def _check(step: float, steps: int, places: IntArray) -> None:

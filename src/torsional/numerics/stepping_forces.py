@@ -183,6 +183,7 @@ def bend(
         rise = told[2]
         if rise < 0.0 or n >= TRUSTED:
             rise = max(rise, _chord(laws, l, values, now.twist[e], mean, memory[l], h, told[0], told[3]))
+        drag *= min(max(told[7], 0.0), 1.0)  # a bristle that has slid on through the step has no rate of its own left
         found = told[0] + drag * (rate - mean)
         worst = max(worst, abs(found - bent.torque[l]))
         bent.torque[l], bent.memory[l] = found, told[4]

@@ -16,7 +16,7 @@ from torsional.numerics.stepping_state import Count, Entry, State
 from torsional.numerics.uncounted import uncounted
 
 SHORT = 1e-6
-"""Length [s] of the step that stands for the start where a coordinate has no mass."""
+"""Length [s] of the step that stands for the start where a coordinate has no mass, or a bristle relaxes at once."""
 
 
 def begin(
@@ -132,6 +132,9 @@ def _at_rest(laws: Laws, values: Array, connection: Array, law: Array) -> None:
         e, torque = laws.of[l], law_at(laws.address[l])
         own = values[laws.start[l] : laws.stop[l]]
         told = torque(own, connection[0, e], connection[1, e], law[1, l], 0.0)
+        soon = torque(own, connection[0, e], connection[1, e], law[1, l], SHORT)
+        if laws.remembers[l] and soon[7] < 0.5:  # forgets its start long before a step is over
+            told = soon
         rest = torque(own, connection[0, e], 0.0, law[1, l], 0.0)
         law[0, l], law[1, l] = told[0], told[4]
         law[4, l] = rest[1] if laws.remembers[l] else rest[0]

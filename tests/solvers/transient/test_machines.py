@@ -12,7 +12,7 @@ from torsional.components import Coupling, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.files import load_model
-from torsional.laws import Contacts, Hinges, Law, LuGre
+from torsional.laws import Contacts, Law, LuGre, Table
 from torsional.model import RPM, Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import (
@@ -134,22 +134,23 @@ def test_friction_goes_on_from_what_it_remembers() -> None:
 
 
 def stops(stiffness: float = 1e8) -> tuple[System, State]:
-    """A small mass that flies between two elastic stops."""
-    law: Law = Hinges(0.0, (0.01, -0.01), (1.0, -1.0), (stiffness, stiffness))
+    """A small mass that flies between two elastic stops, a curve: those that are hinges are guarded."""
+    most = 0.01 * stiffness
+    law: Law = Table(((-0.02, -most), (-0.01, 0.0), (0.0, 0.0), (0.01, 0.0), (0.02, most)))
     system = assemble(Powertrain({"m": Inertia(0.003), "stops": Coupling("ground", "m", law)}))
     return system, State.at_rest(system).moved(0.0, np.array([1.0]))
 
 
 def test_a_step_that_makes_energy_is_halved_and_told() -> None:
     system, start = stops()
-    found = transient(system, (), 0.02, start, speed=0.0, step=2e-5, method="newmark")
+    found = transient(system, (), 0.02, start, speed=0.0, step=2e-4, method="newmark")
     assert found.attrs["refined"].startswith("step halved to")
     energy = found.energy.sel(share=["kinetic", "strain"]).sum("share") / 0.0015
-    assert float(energy.max()) < 1.01 and abs(found.attrs["method_share"]) < 0.02
+    assert float(energy.max()) < 1.01 and -0.05 < found.attrs["method_share"] < 0.01
 
 
 def test_a_run_that_cannot_be_believed_is_refused() -> None:
-    system, start = stops()
+    system, start = stops(1e18)
     with pytest.raises(ModelError, match="no step was small enough") as told:
         transient(system, (), 1.0, start, speed=0.0, step=1e-3)
     assert "contact time" in str(told.value) and "step of" in str(told.value)
