@@ -20,7 +20,7 @@ def run() -> xr.Dataset:
     overriding = load_scenario(
         "gear_shift", [*shift, "from_gear=9", "model.absorber.stop_torque=1500 Nm", "torque=500"]
     )
-    return run_scenario(overriding, load_model(ROOT / "examples" / "truck_dmf.yaml"))
+    return run_scenario(load_model(ROOT / "examples" / "truck_dmf.yaml"), overriding)
 
 
 def test_a_scenario_shows_what_was_done_and_what_it_did(run: xr.Dataset) -> None:

@@ -27,7 +27,7 @@ def run(request: Request, scenario: str, setting: Sequence[str] | None) -> None:
     if Path(scenario).exists():
         checked(request.outputs, [path.suffix for path in request.outputs], [Path(scenario)])
     with running(block.title, request.quiet or request.as_json) as moved:
-        found = run_scenario(block, request.model, moved)
+        found = run_scenario(request.model, block, moved)
     warn_refined(found)
     springs, watched, nodes = (json.loads(found.attrs[key]) for key in ("springs", "watched", "looked_at"))
     told = told_settings(request, scenario=block.scenario, file=_file(scenario), changes=list(setting or ()))
