@@ -107,3 +107,12 @@ def test_lists_of_values() -> None:
     assert listed("0:4000:1000rpm", "speed", "--speed") == pytest.approx(np.arange(5) * 1000 * RPM)
     with pytest.raises(ModelError):
         listed("5,,deg", "relative_angle", "--sweep")
+
+
+def test_a_pendulum_beside_the_springs_changes_no_loop(torsional: Run, truck: str) -> None:
+    asked = ["--speed", "0,2000rpm", "--sweep", "5deg"]
+    plain, with_pendulum = (
+        torsional("hysteresis", model, *asked) for model in (truck, str(EXAMPLES / "truck_dmf_pendulum.yaml"))
+    )
+    assert (with_pendulum.code, with_pendulum.err) == (0, "")
+    assert with_pendulum.out == plain.out

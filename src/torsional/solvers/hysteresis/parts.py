@@ -28,11 +28,11 @@ class Part(NamedTuple):
 
 
 def picked(c: Connections, chosen: IntArray, weights: Array) -> Connections:
-    """Some connections, with other weights."""
+    """Some connections, with other weights; a pendulum hangs on its centrifugal spring, since a slow turn moves no mass."""
     arrays = ("stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
     some: dict[str, Any] = {name: getattr(c, name)[chosen] for name in arrays}
     some |= {name: tuple(getattr(c, name)[i] for i in chosen) for name in ("names", "laws", "loads")}
-    return dataclasses.replace(c, weights=weights, **some)
+    return dataclasses.replace(c, weights=weights, swings=(), **some)
 
 
 def grouped(rows: Array) -> IntArray:
