@@ -28,7 +28,7 @@ class Part(NamedTuple):
 
 
 def picked(c: Connections, chosen: IntArray, weights: Array) -> Connections:
-    """Some connections, with other weights; a pendulum hangs on its centrifugal spring, since a slow turn moves no mass."""
+    """Some connections, with other weights; a pendulum hangs on its centrifugal spring: a slow turn moves no mass."""
     arrays = ("stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
     some: dict[str, Any] = {name: getattr(c, name)[chosen] for name in arrays}
     some |= {name: tuple(getattr(c, name)[i] for i in chosen) for name in ("names", "laws", "loads")}
