@@ -30,6 +30,8 @@ nb_execution_timeout = 300
 nb_merge_streams = True
 nb_output_stderr = "warn"  # a page that warns its reader is not finished
 
+suppress_warnings = ["ref.python"]  # several kernels' tables have a column `torque`: a reference to one may be to any
+
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 
