@@ -115,3 +115,12 @@ def test_names_of_motions() -> None:
     assert named(0, 0.3, 0.65, np.nan, False).kind == "chaotic"
     assert named(0, 0.3, 1e-4, 1.02, False).kind == "quasi-periodic"
     assert named(0, 0.3, -0.2, np.nan, False).kind == "unsettled"
+
+
+def test_a_crank_that_does_not_turn_is_refused_with_where_its_angle_is() -> None:
+    """In a scenario that starts from rest the frame stands, and all of the rotation is the crank's own."""
+    signal, alpha = run_up()
+    with pytest.raises(ModelError, match=r"the crank does not turn; .*crank_angle_of\(run, node\)"):
+        orders_in_time(signal, 0.0 * alpha, [3.0])
+    with pytest.raises(ModelError, match="stands or turns back"):
+        orders_in_time(signal, -alpha, [3.0])

@@ -44,8 +44,12 @@ def orders_in_time(
     """
     order = _checked(np.atleast_1d(np.asarray(orders, dtype=float)), cycles, window)
     turned = np.asarray(crank_angle.values, dtype=float)
+    if not turned.size or turned.max() == turned.min():
+        remedy = "the frame stands: use the crank's own angle, crank_angle_of(run, node)"
+        raise ModelError("the crank does not turn", where="crank_angle", remedy=remedy)
     if (np.diff(turned) <= 0).any():
-        raise ModelError("the crank turns back", where="crank_angle", remedy="use the mean angle: run.crank_angle")
+        remedy = "use the mean angle, run.crank_angle, or the stretch of time in which it turns"
+        raise ModelError("the crank stands or turns back", where="crank_angle", remedy=remedy)
     span, count = CYCLE * cycles, max(int(np.ceil(order.max() * 2 * cycles * SAMPLES)), 64)
     first = np.ceil(turned[0] / CYCLE - 1e-9) * CYCLE
     starts = np.arange(first, turned[-1] - span + 1e-9 * span, span * (1.0 - overlap))
