@@ -42,8 +42,8 @@ class ModelError(TorsionalError, ValueError):
         return type(self)(self.problem, where=where, file=file or self.file, **told)
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """A remedy that names the known word nearest to a misspelt one, or lists them all.
+def nearest(word: str, known: Iterable[str], listed: bool = True) -> str:
+    """A remedy that names the known word nearest to a misspelt one, or lists them all where they are to be ``listed``.
 
     >>> nearest("stifness", ["stiffness", "damping"])
     "did you mean 'stiffness'?"
@@ -52,4 +52,6 @@ def nearest(word: str, known: Iterable[str]) -> str:
     close = difflib.get_close_matches(word, words, n=1, cutoff=0.6)
     if close:
         return f"did you mean '{close[0]}'?"
+    if not listed:
+        return ""
     return "known: " + ", ".join(sorted(words)[:20]) if words else "none is known here"

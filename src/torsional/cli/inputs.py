@@ -35,7 +35,7 @@ def gears(model: Model, text: str) -> list[str]:
     named = [text] if text in known else [part.strip() for part in text.split(",")]
     for name in named:
         if name not in known:
-            remedy = nearest(name, known) if model.gears else "this model has no gears: leave --gear out"
+            remedy = nearest(name, known, listed=False) if model.gears else "this model has no gears: leave --gear out"
             allowed = ", ".join(known) if model.gears else ""
             raise ModelError(f"there is no gear {units.quoted(name)}", where="--gear", allowed=allowed, remedy=remedy)
     return list(dict.fromkeys(named))

@@ -148,6 +148,10 @@ def test_a_machine_without_clutch_or_engine_says_so(truck: Model) -> None:
     with pytest.raises(ModelError, match="no engine"):
         planned(load_scenario("engine_start"), bare)
     marine = load_model(ROOT / "examples" / "marine_line.yaml")
+    with pytest.raises(ModelError, match="gears: a shift needs two gears"):
+        planned(load_scenario("gear_shift"), marine)
+    with pytest.raises(ModelError, match="name the one between wheels and vehicle by the key 'tyres'"):
+        planned(load_scenario("stall", ["brake=5 kNm"]), marine)
     with pytest.raises(ModelError):
         planned(load_scenario("clutch_engagement"), marine)
 

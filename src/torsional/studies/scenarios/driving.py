@@ -81,6 +81,8 @@ def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
 
 def gear_shift(block: GearShift, model: Model) -> Plan:
     """The vehicle rolls as fast as in the old gear; the clutch brings the engine to the new gear's speed."""
+    if len(model.gears) < 2:
+        raise ModelError("a shift needs two gears", where="gears", found=f"{len(model.gears)}")
     speed = sizes.speed(model, block.speed, MIDDLE)
     old = lines.gear_of(model, block.from_gear, -2, "from_gear")
     new = lines.gear_of(model, block.to_gear, -1, "to_gear")

@@ -51,7 +51,7 @@ def gear_of(model: Model, name: str, place: int = -1, where: str = "gear") -> st
     if not name:
         return known[max(min(place, len(known) - 1), -len(known))]
     if name not in known:
-        remedy = nearest(name, known) if model.gears else "this model has no gears: leave the key out"
+        remedy = nearest(name, known, listed=False) if model.gears else "this model has no gears: leave the key out"
         allowed = ", ".join(known) if model.gears else ""
         raise ModelError(f"there is no gear '{name}'", where=where, allowed=allowed, remedy=remedy)
     return name
@@ -123,7 +123,9 @@ def braked(line: Powertrain, node: str, torque: float) -> Powertrain:
 def gripping(line: Powertrain, tyres: str, grip: float, level: str = "") -> Powertrain:
     """The line whose ``tyres`` hold the road by friction, of a ``level``, a contact patch between them and it."""
     if tyres not in line.components:
-        raise ModelError(f"there is no connection '{tyres}'", where="tyres", remedy=nearest(tyres, line.components))
+        springs = [name for name, part in line.components.items() if isinstance(part, Coupling | Shaft)]
+        remedy = f"name the one between wheels and vehicle by the key 'tyres'; {nearest(tyres, springs)}"
+        raise ModelError(f"there is no connection '{tyres}'", where="tyres", remedy=remedy)
     vehicle = _ends(line, tyres)[0]
     values: dict[str, Any] = {"stiffness": STICKING * grip, "breakaway": 1.0, "damping": 0.1 * grip}
     road = SlipClutch.of_capacity(vehicle, PATCH, grip, level=level, **values)
