@@ -142,7 +142,7 @@ def with_viscous_losses(system: System, frequency: float) -> System:
 def _refuse_loss(c: Connections) -> None:
     for i in np.flatnonzero(c.loss_factor * c.stiffness)[:1]:
         problem = "a loss factor is a matter of the frequency domain, time has none"
-        remedy = "give a damping c = ηk/ω at the frequency that matters, or with_viscous_losses(system, frequency)"
+        remedy = "give it a damping c = ηk/ω at the frequency that matters instead (of a system: with_viscous_losses)"
         raise ModelError(problem, where=c.names[i], found=f"loss_factor {c.loss_factor[i]:g}", remedy=remedy)
 
 
