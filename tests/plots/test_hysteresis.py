@@ -34,6 +34,8 @@ def test_a_loop_for_every_speed(loops: xr.Dataset) -> None:
     drawn = [line for line in axes.lines if line.get_gid() == "loop"]
     assert [line.get_label() for line in drawn] == ["0 rpm", "1000 rpm", "3000 rpm"]
     assert len({line.get_color() for line in drawn}) == 3
+    legend = axes.get_legend()
+    assert legend is not None and legend.get_texts()[-1].get_text() == "first loading"
     for line, speed in zip(drawn, loops.speed, strict=True):
         x, y = (np.asarray(values) for values in line.get_data())
         assert (x[0], y[0]) == (x[-1], y[-1])
