@@ -61,7 +61,9 @@ def test_a_start_reaches_idle_and_tells_its_peaks(torsional: Run, truck: str) ->
     row = next(line for line in told.out.splitlines() if line.startswith("dmf"))
     assert float(row.split()[5]) == pytest.approx(np.rad2deg(float(highest)), rel=1e-4)
     assert Path("s.png").read_bytes().startswith(b"\x89PNG")
-    assert Path("s.csv").read_text(encoding="utf-8-sig").startswith("time [s],")
+    heads = Path("s.csv").read_text(encoding="utf-8-sig").splitlines()[0].split(",")
+    assert heads[:2] == ["time [s]", "angle primary [rad]"]  # no column for a frame that stands
+    assert "torque dmf [Nm]" in heads and [head for head in heads if "lowest" in head or "stop" in head] == []
 
 
 def test_settings_and_files_say_the_same(torsional: Run, truck: str) -> None:
@@ -82,6 +84,19 @@ def test_a_stalled_engine_is_told(torsional: Run, truck: str) -> None:
     told = torsional("scenario", truck, "clutch_engagement", *dumped)
     assert told.code == 0
     assert "warning: the engine stalls at" in told.err
+
+
+def test_an_engine_that_stops_is_told_to_be_at_rest(torsional: Run, truck: str) -> None:
+    told = torsional("scenario", truck, "engine_stop")
+    assert told.code == 0
+    assert "warning: the engine comes to rest at 1.8" in told.err
+
+
+def test_rounding_is_no_torque(torsional: Run, truck: str) -> None:
+    """Road load only brakes: what is above nought in its torque is nought."""
+    told = torsional("scenario", truck, "clutch_engagement", "-s", "duration=1.5 s")
+    row = next(line for line in told.out.splitlines() if line.startswith("road_load"))
+    assert row.split()[1] == "0" and float(row.split()[2]) > 1000
 
 
 def test_help_names_every_kind(torsional: Run) -> None:

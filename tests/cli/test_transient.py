@@ -17,6 +17,9 @@ RPM = np.pi / 30
 
 BAD = [
     (["--gear", "13"], ["--gear", "'13'"]),
+    (["--gear", "neutral"], ["--gear", "'neutral'; allowed: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12\n"]),
+    (["--speed", "600:"], ["--speed", "how does the speed run?", "found '600:'", "600:1200rpm"]),
+    (["--speed", "600:1200:100rpm"], ["--speed", "found '600:1200:100rpm'"]),
     (["--duration", "-3s"], ["--duration", "must be positive"]),
     (["--duration", "3 Nm"], ["--duration", "Nm"]),
     (["--speed", "0rpm"], ["--speed", "the engine must turn", "torsional scenario"]),
@@ -31,7 +34,7 @@ def test_bad_lines_are_answered_in_one_sentence(
 ) -> None:
     answer = torsional("transient", truck, *arguments)
     assert (answer.code, answer.out) == (2, "")
-    assert [part for part in told if part not in answer.err.splitlines()[-1]] == []
+    assert [part for part in told if part not in answer.err.splitlines(keepends=True)[-1]] == []
     assert list(Path().iterdir()) == []
 
 
@@ -50,12 +53,15 @@ def test_at_one_speed_it_is_the_linear_response(torsional: Run, truck: str) -> N
 
 def test_a_run_up_follows_its_speed(torsional: Run, truck: str) -> None:
     asked = ["--speed", "600:1200rpm", "--torque", "1200Nm", "--duration", "1s"]
-    told = torsional("transient", truck, *asked, "-o", "u.json", "-o", "u.png")
+    told = torsional("transient", truck, *asked, "-o", "u.json", "-o", "u.png", "-o", "u.csv")
     assert told.code == 0, told.err
     assert "Peaks, 600 rpm to 1200 rpm, 1200 Nm in gear 12" in told.out
     speed = json.loads(Path("u.json").read_text(encoding="utf-8"))["result"]["coordinates"]["speed"]["values"]
     assert (speed[0], speed[-1]) == pytest.approx((600 * RPM, 1200 * RPM))
     assert Path("u.png").read_bytes().startswith(b"\x89PNG")
+    heads = Path("u.csv").read_text(encoding="utf-8-sig").splitlines()[0].split(",")
+    assert heads[:4] == ["time [s]", "speed [rad/s]", "speed [rpm]", "crank_angle [rad]"]
+    assert [head for head in heads if "lowest" in head or "stop" in head] == []  # figures of a whole run: no signals
 
 
 def test_a_run_down_is_one_too(torsional: Run, truck: str) -> None:

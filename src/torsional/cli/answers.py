@@ -25,7 +25,8 @@ PICTURES = (".png", ".svg")
 class Answer:
     """``tables`` are printed; ``document`` goes to --json and .json, with ``data`` as its result.
 
-    ``data`` is also what .csv holds; ``full`` what .nc holds, where that is more; ``picture`` draws a figure.
+    ``data`` is also what .csv holds, or ``columns`` where that is less; ``full`` what .nc holds, where that is more;
+    ``picture`` draws a figure.
     """
 
     command: str
@@ -34,6 +35,7 @@ class Answer:
     data: xr.Dataset | None = None
     full: xr.Dataset | None = None
     picture: Callable[[], Figure] | None = None
+    columns: xr.Dataset | None = None
 
 
 def told_settings(request: Request, **settings: object) -> dict[str, object]:
@@ -78,7 +80,7 @@ def _writer(answer: Answer, path: Path, text: str) -> Writer:
     data = answer.data
     assert data is not None
     if suffix == ".csv":
-        return text_writer("\ufeff" + csv_text(data))
+        return text_writer("\ufeff" + csv_text(data if answer.columns is None else answer.columns))
     return lambda draft: _save(data if answer.full is None else answer.full, draft)
 
 

@@ -28,6 +28,8 @@ _ENERGIES = {
 
 RUNNING = ("tip_in", "tip_out", "clutch_engagement", "gear_shift", "traction_loss", "idle_pulse")
 """Scenarios through which an engine runs."""
+RESTING = ("engine_stop", "stall")
+"""Scenarios in which it comes to rest."""
 
 
 def seconds(text: str, option: str, default: float) -> float:
@@ -50,8 +52,14 @@ def _peaks(run: xr.Dataset, title: str) -> Table:
     columns += [Column("largest at", "time"), Column("lowest twist", "relative_angle")]
     columns += [Column("highest twist", "relative_angle")]
     names = ("torque_lowest", "torque_highest", "peak_time", "twist_lowest", "twist_highest")
-    rows = [[e, *(float(run[name].sel(element=e)) for name in names)] for e in told_elements(run)]
+    rows = [[e, *_unrounded([float(run[name].sel(element=e)) for name in names])] for e in told_elements(run)]
     return Table(f"Peaks, {title}" if title else "Peaks", columns, rows)
+
+
+def _unrounded(figures: list[float]) -> list[float]:
+    """The figures of one element, the lower or higher torque nought where only rounding is left of it."""
+    nothing = _ROUNDING * max(map(abs, figures[:2]))
+    return [0.0 if abs(value) <= nothing else value for value in figures[:2]] + figures[2:]
 
 
 def told_elements(run: xr.Dataset) -> list[str]:
@@ -92,6 +100,12 @@ def chosen(run: xr.Dataset, nodes: Sequence[str], elements: Sequence[str]) -> xr
     return kept.sel(node=list(dict.fromkeys(nodes)), element=list(dict.fromkeys(elements)))
 
 
+def signals(data: xr.Dataset) -> xr.Dataset:
+    """What goes to .csv, a row an instant: what changes with time, without the rotation of a frame that stands."""
+    kept = data[[name for name in data.data_vars if "time" in data[name].dims]]
+    return kept if kept.crank_angle.any() else kept.drop_vars(["speed", "crank_angle"])
+
+
 def hand_over(answer: Answer, request: Request, status: str) -> None:
     """Deliver the answer; of a run that was stopped too, which then ends with the exit code of Ctrl-C."""
     stopped = status != "complete"
@@ -107,8 +121,10 @@ def warn_refined(run: xr.Dataset) -> None:
     for told in ("refined", "guarded", "energy_error", "unresolved", "restless"):
         if told in run.attrs:
             complain(str(run.attrs[told]), kind="warning")
-    if run.attrs.get("scenario") in RUNNING:
+    kind = run.attrs.get("scenario")
+    if kind in (*RUNNING, *RESTING):
         turning = run.angular_velocity.sel(node=run.attrs["crank"])
         if float(turning.min()) <= 0:
             at = units.show(float(run.time[int((turning.values <= 0).argmax())]), "time")
-            complain(f"the engine stalls at {at}: what follows is no engine's motion any more", kind="warning")
+            event = "stalls" if kind in RUNNING else "comes to rest"
+            complain(f"the engine {event} at {at}: what follows is no engine's motion any more", kind="warning")

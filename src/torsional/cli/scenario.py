@@ -13,7 +13,7 @@ from torsional.cli.answers import Answer, told_settings
 from torsional.cli.outputs import checked
 from torsional.cli.progress import running
 from torsional.cli.request import Request
-from torsional.cli.runs import chosen, hand_over, run_tables, warn_refined
+from torsional.cli.runs import chosen, hand_over, run_tables, signals, warn_refined
 from torsional.files.scenario import SUFFIXES, load_scenario
 from torsional.studies.scenarios.running import run_scenario
 
@@ -34,7 +34,7 @@ def run(request: Request, scenario: str, setting: Sequence[str] | None) -> None:
     settings = {"values": block.model_dump(mode="json"), "gear": found.attrs["gear"], "status": found.attrs["status"]}
     tables = run_tables(found, found.attrs["title"], springs)
     data = chosen(found, [found.attrs["crank"], *nodes], [*springs, *watched])
-    answer = Answer("scenario", tables, {**told, **settings}, data, found, picture=lambda: _picture(found))
+    answer = Answer("scenario", tables, {**told, **settings}, data, found, lambda: _picture(found), signals(data))
     hand_over(answer, request, found.attrs["status"])
 
 

@@ -15,7 +15,7 @@ from torsional.cli.modes import in_gear
 from torsional.cli.places import chosen_places
 from torsional.cli.progress import running
 from torsional.cli.request import Request
-from torsional.cli.runs import chosen, hand_over, run_tables, seconds, warn_refined
+from torsional.cli.runs import chosen, hand_over, run_tables, seconds, signals, warn_refined
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -51,13 +51,15 @@ def run(
     springs = [name for name in elements if name in machine.landmarks.springs] or elements[:1]
     tables = run_tables(found, title, [name for name in springs if name in found.element.values])
     others = [name for name in elements if name not in springs]
+    data = chosen(found, nodes, elements)
     answer = Answer(
         "transient",
         tables,
         {**told, "status": found.attrs["status"]},
-        chosen(found, nodes, elements),
+        data,
         found,
         picture=lambda: _picture(found, nodes, springs, others, title),
+        columns=signals(data),
     )
     hand_over(answer, request, found.attrs["status"])
 
@@ -75,6 +77,9 @@ def speed_over(model: Model, text: str, duration: float) -> tuple[SpeedProfile, 
 def _ends(text: str) -> tuple[float, float]:
     """The ends of a run-up, or of a run-down."""
     first, _, last = text.partition(":")
+    if not (first.strip() and last.strip()) or ":" in last:
+        remedy = "name where it begins and where it ends, as 600:1200rpm"
+        raise ModelError("how does the speed run?", where="--speed", found=units.quoted(text), remedy=remedy)
     unit = last.lstrip(" 0123456789.+-eE")
     both = (first if first.strip()[-1:].isalpha() else first + unit, last)
     start, end = (units.read(part, "speed", "--speed") for part in both)
