@@ -70,6 +70,17 @@ def test_a_run_up_begins_in_steady_vibration(truck: Model) -> None:
     assert float(run.energy.sel(share="dampers")[0]) == 0.0
 
 
+def test_a_name_and_a_number_do_as_well(truck: Model) -> None:
+    """A scenario by its name, a constant speed as a number, as `transient` takes it."""
+    named, loaded = (run_scenario(truck, kind) for kind in ("tip_in", load_scenario("tip_in")))
+    assert named.attrs["scenario"] == "tip_in"
+    np.testing.assert_array_equal(named.torque, loaded.torque)
+    by_number, by_profile = (run_up(truck, speed, 1000.0, 0.1) for speed in (100.0, SpeedProfile.constant(100.0)))
+    np.testing.assert_array_equal(by_number.torque, by_profile.torque)
+    with pytest.raises(ModelError, match="there is no such scenario"):
+        run_scenario(truck, "tip_inn")
+
+
 def test_steps_that_are_too_large_are_refused(truck: Model) -> None:
     short = ["duration=0.6 s", "at=0.1 s"]
     with pytest.raises(ModelError, match=r"step: the step is too large; found 0.005 s; allowed: a hundredth of a turn"):

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError
+from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Scenario
 from torsional.model import Model
 from torsional.solvers.transient.run import Progress, transient
@@ -27,15 +28,17 @@ STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
 
-def run_scenario(model: Model, scenario: Scenario, progress: Progress | None = None) -> xr.Dataset:
+def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | None = None) -> xr.Dataset:
     """What happens to a model in a scenario: the Dataset of `transient` with the figures of `read_off`.
 
+    ``scenario``: as `load_scenario` gives it, or the name of a kind or of a file, which is loaded as it is.
     ``schedule`` (event, time) is what was done; attributes name scenario, gear and what is worth looking at.
     Interrupted from the keyboard it gives what was reached, ``status`` says so.
     Raises ModelError for gears, nodes, torques and values that cannot be, and for steps too large for the line.
     """
-    run = run_plan(planned(scenario, model), progress)
-    return run.assign_attrs(scenario=scenario.scenario, model=model.name, model_hash=model.hash)
+    block = load_scenario(scenario) if isinstance(scenario, str) else scenario
+    run = run_plan(planned(block, model), progress)
+    return run.assign_attrs(scenario=block.scenario, model=model.name, model_hash=model.hash)
 
 
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
