@@ -8,12 +8,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import xarray as xr
+from tests.properties.test_periodic import random_machine
 from tests.random_models import Network, random_network
+from tests.solvers.periodic.machines import picked, respond
 
 from torsional.components import Component, Coupling, GearPair, Inertia, PlanetaryGear, Shaft
 from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Hinges, Jenkins, Law, LuGre, hinge_rows
+from torsional.laws import Contacts, Hinges, Jenkins, Law, LuGre, Table, hinge_rows
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.complementarity_step import OneSided
 from torsional.numerics.exact_contacts import ExactContacts
@@ -205,6 +207,22 @@ def test_stages_play_and_contacts_are_met_to_second_order(seed: int) -> None:
     assert np.log2(missed[0] / missed[-1]) / 4.0 >= 1.9
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_runs_keep_to_motions_of_harmonic_balance(seed: int) -> None:
+    """Stages on a random machine: four turns from a stable motion, nearer to it the more orders it has."""
+    of = random_machine(np.random.default_rng(seed))
+    left = []
+    for highest in (15.0, 60.0):
+        found = respond(dataclasses.replace(of, hold=""), (60.0, 140.0), at=np.array([100.0]), highest_order=highest)
+        point = picked(found, 100.0, "main").isel(point=0)
+        run = transient(of.system, of.excitation, 0.08 * np.pi, point, speed=100.0, step=1e-5, spectral_radius=0.9)
+        turns = np.exp(100j * np.multiply.outer(run.time.values, point.order.values))
+        balanced = (turns @ point.twist.sel(element="dmf").values).real
+        off = np.abs(run.twist.sel(element="dmf").values - balanced).max()
+        left.append(off / np.abs(balanced - balanced.mean()).max())
+    assert left[1] < 1e-3 and left[1] < max(0.5 * left[0], 1e-5)  # one machine of them never leaves its stage
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_friction_is_met_by_explicit_integration(seed: int) -> None:
     """Washers and bristles beside stages and play; where a washer lets go inside a step the order is a little less."""
@@ -381,6 +399,49 @@ def test_bristles_create_no_energy(seed: int) -> None:
     assert lost > 1e-4 * stored[0] and abs(made) < 1e-6 * lost
 
 
+def never_more(system: System, start: State, energy_of: Callable[[xr.Dataset], np.ndarray], **given: object) -> None:
+    """A free run is refused or ends with no more energy than it began with, give or take the 1 % that is told."""
+    try:
+        run = transient(system, (), 1.0, start, speed=0.0, **given)  # type: ignore[arg-type]
+    except ModelError as refused:
+        assert "no step was small enough" in str(refused)
+        return
+    held = energy_of(run)
+    assert held[-1] <= 1.02 * held[0]
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.8])
+@pytest.mark.parametrize("step", [2e-5, 1e-4, 1e-3])
+def test_walls_given_as_a_table_are_no_source_of_energy(step: float, radius: float) -> None:
+    """Their strain is the integral of the curve, whatever the steps make of it."""
+    law = Table(((-0.02, -1e6), (-0.01, 0.0), (0.0, 0.0), (0.01, 0.0), (0.02, 1e6)))
+    system, start = between_stops(law)
+
+    def energy_of(run: xr.Dataset) -> np.ndarray:
+        past = np.linspace(0.0, 1.0, 41) * run.angle.values
+        strain = np.trapezoid(law.torque(past), past, axis=1)
+        return np.asarray(0.0015 * run.angular_velocity.values[:, 0] ** 2 + strain)
+
+    never_more(system, start, energy_of, step=step, spectral_radius=radius)
+
+
+@pytest.mark.parametrize("radius", [1.0, 0.8])
+@pytest.mark.parametrize("step", [1e-4, 1e-2])
+@pytest.mark.parametrize("stiffness", [1e5, 1e8, 1e11])
+def test_bristles_that_a_step_cannot_follow_are_no_source_of_energy(
+    stiffness: float, step: float, radius: float
+) -> None:
+    law = LuGre(stiffness, stiffness**0.5, 1.0, 1.5, 0.001)
+    parts = {"m": Inertia(1.0), "s": Shaft("ground", "m", 100.0), "f": Coupling("ground", "m", law)}
+    system = assemble(Powertrain(parts))
+
+    def energy_of(run: xr.Dataset) -> np.ndarray:
+        q, v = run.angle.values[:, 0], run.angular_velocity.values[:, 0]
+        return np.asarray(0.5 * (v**2 + 100.0 * q**2))
+
+    never_more(system, State.at_rest(system).moved(0.0, 1.0), energy_of, step=step, spectral_radius=radius)
+
+
 # --- what would only come back as numbers that are none ---
 
 
@@ -390,6 +451,9 @@ def test_bristles_create_no_energy(seed: int) -> None:
         ({"step": np.nan}, "step"),
         ({"spectral_radius": np.nan}, "spectral_radius"),
         ({"speed": np.inf}, "speed"),
+        ({"reference_time": -0.1}, "reference_time"),
+        ({"angle_error": np.nan}, "angle_error"),
+        ({"output": np.inf}, "output"),
         ({"hold": "nobody"}, "nobody"),
         ({"reference": "nobody"}, "nobody"),
     ],
@@ -415,6 +479,12 @@ def test_starts_and_torques_that_are_no_numbers_are_refused() -> None:
             transient(system, (), 0.01, start.moved(angle, 0.0), speed=0.0)
     with pytest.raises(ModelError):
         TorqueHistory("mass", (0.0, 1.0), (0.0, np.nan))
+
+
+def test_energy_beyond_all_numbers_is_refused() -> None:
+    system = assemble(Powertrain({"m": Inertia(1.0), "s": Shaft("ground", "m", 100.0)}))
+    with pytest.raises(ModelError):
+        transient(system, (), 0.01, State.at_rest(system).moved(0.0, 1e160), speed=0.0)
 
 
 @pytest.mark.parametrize("deep", [0.001, 1.0])
