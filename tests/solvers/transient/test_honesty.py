@@ -78,3 +78,10 @@ def test_runs_end_where_they_should_and_never_beyond_numbers() -> None:
     assert transient(DISC, PUSH, 0.010004, "rest").attrs["end_time"] == pytest.approx(0.010004, rel=1e-12)
     with pytest.raises(ModelError, match="beyond all numbers"):
         transient(DISC, PUSH, 0.01, State.at_rest(DISC).moved(0.0, [1e160]))
+
+
+def test_a_spring_to_the_ground_takes_the_mean_torque_whatever_node_is_held() -> None:
+    held, free = (transient(DISC, PUSH, 0.1, "rest", hold=hold) for hold in ("disc", ""))
+    np.testing.assert_array_equal(held.angle.values, free.angle.values)
+    with pytest.raises(ModelError, match="dics"):
+        transient(DISC, PUSH, 0.1, "rest", hold="dics")

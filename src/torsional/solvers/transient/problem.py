@@ -19,6 +19,7 @@ from torsional.solvers.transient.arrays import connected, masses, with_pendulums
 from torsional.solvers.transient.drives import all_acting, held
 from torsional.solvers.transient.profiles import Level, level_of
 from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
+from torsional.solvers.transient.starts import grounded
 from torsional.system import System
 
 Drives = Drive | Excitation | Sequence[Drive | Excitation]
@@ -56,6 +57,9 @@ class Problem:
             found, allowed = f"{reference_time:g} s", "a time above zero, or infinite"
             raise ModelError("nothing follows so fast", where="reference_time", found=found, allowed=allowed)
         profile = as_speed(only_speed(drives) if speed is None else speed)
+        if hold and grounded(system):  # springs to the ground carry the mean, as in periodic motion
+            system.node_index(hold)
+            hold = ""
         acting = held(all_acting(drives, system, profile), system, hold)
         given = {name: level_of(*knots, f"levels.{name}") for name, knots in (levels or {}).items()}
         return cls(system, acting, profile, hold, given, reference, reference_time)

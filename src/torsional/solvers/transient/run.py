@@ -60,7 +60,8 @@ def transient(
     `TorqueHistory`, `Governor`, or several.  ``start``: "equilibrium" under the mean torques (default), "vibrating"
     (the linear response), "rest", a `State`, the result of another run, or one motion of `harmonic_response` or
     `periodic_response`.  ``speed`` [rad/s]: the mean speed or a `SpeedProfile`, default that of the excitation.
-    ``hold``: the node that takes up the mean torque.  ``levels`` {name: (times, values)} that normal loads follow.
+    ``hold``: the node that takes up the mean torque where no spring to the ground does.  ``levels`` {name: (times,
+    values)} that normal loads follow.
     ``reference``: node whose speed counts for centrifugal forces; with ``reference_time`` [s] the dampers to ground
     follow it.  ``step`` [s], ``method`` (chung_hulbert, hht, bossak, newmark; "explicit" chooses its steps by
     ``tolerance``), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
@@ -91,7 +92,7 @@ def transient(
     given = {"hold": hold, "levels": levels, "reference": reference, "reference_time": reference_time}
     problem = Problem.of(system, drives, speed, **given)  # type: ignore[arg-type]
     kept(keep, system.nodes, system.connections.names)
-    state = starting(start, system, problem.acting, hold, problem.start_speed)
+    state = starting(start, system, problem.acting, problem.hold, problem.start_speed)
     notes = {"switched": words} if (words := _switching(problem)) else {}
     step = _fitting(step, time)
     run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)
