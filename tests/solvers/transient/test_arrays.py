@@ -138,6 +138,10 @@ def test_loss_factors_are_refused_or_made_dampers() -> None:
     assert connected(taken, {"pedal": 0}).damping[place] == pytest.approx(40.0 + 0.02 * 1e5 / (50 * np.pi))
     with pytest.raises(ModelError, match="frequency"):
         with_viscous_losses(lossy, 0.0)
+    parts = {"a": Inertia(1.0), "b": Inertia(2.0), "c": Inertia(1.0), "soft": Shaft("a", "b", 1e4, loss_factor=0.1)}
+    both = assemble(Powertrain({**parts, "stiff": Shaft("b", "c", 1e5, loss_factor=0.01)}))
+    with pytest.raises(ModelError, match=r"soft: .* found loss_factor 0.1, and more in stiff; "):  # all at once
+        connected(both)
 
 
 def test_loads_refused() -> None:

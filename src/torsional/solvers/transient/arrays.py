@@ -140,10 +140,13 @@ def with_viscous_losses(system: System, frequency: float) -> System:
 
 
 def _refuse_loss(c: Connections) -> None:
-    for i in np.flatnonzero(c.loss_factor * c.stiffness)[:1]:
+    lossy = np.flatnonzero(c.loss_factor * c.stiffness).tolist()
+    for i in lossy[:1]:
+        others = ", ".join(dict.fromkeys(c.names[other].partition(".")[0] for other in lossy[1:]))
+        found = f"loss_factor {c.loss_factor[i]:g}" + (f", and more in {others}" if others else "")
         problem = "a loss factor is a matter of the frequency domain, time has none"
         remedy = "give it a damping c = ηk/ω at the frequency that matters instead (of a system: with_viscous_losses)"
-        raise ModelError(problem, where=c.names[i], found=f"loss_factor {c.loss_factor[i]:g}", remedy=remedy)
+        raise ModelError(problem, where=c.names[i], found=found, remedy=remedy)
 
 
 def _rotation(c: Connections) -> Array:
