@@ -132,7 +132,7 @@ def detailed(design: SpringFlywheel) -> Absorber:
     """All its bodies: flywheels, shoes or segments, springs, tabs, friction; ``dmf`` is the end stop between flywheels.
 
     The angle of ``dmf`` is the travel; the torque on the secondary is that of the end stop and of the tabs
-    ``…_secondary_drive`` and ``…_secondary_coast``.
+    ``…_secondary_drive``, less that of the tabs ``…_secondary_coast``.
     """
     end = design.stop_angle
     parts: dict[str, Component] = {

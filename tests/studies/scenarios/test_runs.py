@@ -99,3 +99,15 @@ def test_a_detailed_flywheel_carries_what_the_clutch_does() -> None:
     told = run.attrs["told"]
     assert '"dmf"' in told
     assert "arc_1" not in told
+
+
+@pytest.mark.parametrize("kind", ["arc", "straight"])
+def test_the_torque_of_a_detailed_flywheel_moves_its_secondary(kind: str) -> None:
+    """J ω̇ of the secondary flywheel is that torque less the clutch's, while driving and, tabs pushed back, on coast."""
+    model = load_model(ROOT / "examples" / f"truck_dmf_{kind}_spring.yaml")
+    changes = ["duration=0.6 s", "at=0.05 s", "before=600 Nm", "after=-120 Nm"]
+    run = run_scenario(model, load_scenario("tip_out", changes))
+    own, clutch = run.torque.sel(element="dmf"), run.torque.sel(element="clutch")
+    needed = clutch + 1.0 * run.acceleration.sel(node="secondary")
+    assert float(own.min()) < -300 and float(own.max()) > 600
+    np.testing.assert_allclose(own, needed, atol=1e-9)

@@ -22,8 +22,9 @@ from torsional.units import show
 
 FINEST, SLOWEST = 0.01, 60.0
 """Share of a turn of the crank that a step may take, at its speed or at this one [rad/s] where it is slower."""
-TABS = ("_secondary_drive", "_secondary_coast")
-"""Ends of the names of tabs by which springs rest on the flywheel that carries the clutch."""
+TABS = {"_secondary_drive": 1.0, "_secondary_coast": -1.0}
+"""Ends of the names of tabs by which springs rest on the flywheel that carries the clutch; a tab's torque is that by
+which it is pushed, and on coast this is against the torque of the flywheel."""
 STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
@@ -94,10 +95,13 @@ def from_zero(run: xr.Dataset) -> xr.Dataset:
 
 def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
     """The run with what the tabs of a detailed dual mass flywheel carry counted as its torque, beside its end stop."""
-    tabs = [name for name in run.element.values if name in plan.inner and str(name).endswith(TABS)]
-    if not tabs or len(plan.springs) != 1:
+    inner = [str(name) for name in run.element.values if name in plan.inner]
+    if not any(name.endswith(tuple(TABS)) for name in inner) or len(plan.springs) != 1:
         return run
-    whole = run.torque + run.torque.sel(element=tabs).sum("element") * (run.element == plan.springs[0])
+    whole = run.torque
+    for end, sign in TABS.items():
+        tabs = [name for name in inner if name.endswith(end)]
+        whole = whole + sign * run.torque.sel(element=tabs).sum("element") * (run.element == plan.springs[0])
     return run.assign(torque=whole.transpose(*run.torque.dims).assign_attrs(run.torque.attrs))
 
 
