@@ -19,7 +19,9 @@ LEAST_SEGMENTS = 6
 
 @dataclass(frozen=True, kw_only=True)
 class ArcSprings(SpringFlywheel):
-    """A dual mass flywheel with arc springs as it is designed; what it shares with others: `SpringFlywheel`.
+    """A dual mass flywheel with arc springs as it is designed.
+
+    Inertias, channels, clearances, stop and friction are told by `torsional.absorbers.spring_design.SpringFlywheel`.
 
     In each channel one arc spring ``spring`` of ``segments`` n sections, each with the rate n·k, between n + 1 masses
     that slide on the primary's guide: an n-th of the spring's mass each, half of it at the ends together with an

@@ -17,7 +17,9 @@ from torsional.errors import ModelError
 
 @dataclass(frozen=True, kw_only=True)
 class StraightSprings(SpringFlywheel):
-    """A dual mass flywheel with straight springs as it is designed; what it shares with others: `SpringFlywheel`.
+    """A dual mass flywheel with straight springs as it is designed.
+
+    Inertias, channels, clearances, stop and friction are told by `torsional.absorbers.spring_design.SpringFlywheel`.
 
     In each channel ``springs_per_row`` N springs ``spring`` with N + 1 shoes of ``shoe_mass`` [kg] and
     ``shoe_width`` [m] (the two at the ends ``end_shoe_mass``, ``end_shoe_width``), half the mass of neighbouring

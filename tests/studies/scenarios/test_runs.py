@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,7 @@ def test_a_pulse_at_idle_leaves_a_sub_harmonic_in_springs_with_lash(truck: Model
 def test_sliding_linings_carry_their_capacity(truck: Model) -> None:
     settings = ["clutch.within=1 s", "clutch.engages=0 s", "duration=0.6 s", "speed=1400 rpm", "gear=6"]
     run = run_scenario(truck, load_scenario("clutch_engagement", settings))
+    assert json.loads(run.attrs["looked_at"]) == ["gearbox_input", "vehicle"]
     slip = run.angular_velocity.sel(node="secondary") - run.angular_velocity.sel(node="clutch_lining")
     sliding = (slip.values > 5.0) & (run.time.values > 0.05)
     assert sliding.sum() > 100

@@ -69,7 +69,7 @@ def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
         **_in_gear(block, model, line, gear, lines.LININGS),
-        nodes=(model.landmarks.input,) if model.landmarks.input else (),
+        nodes=tuple(node for node in (model.landmarks.input, load) if node),
         drives=drives,
         speed=speed,
         lag=speed - block.vehicle_at,

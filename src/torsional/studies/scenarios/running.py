@@ -30,7 +30,7 @@ STEP, OUTPUT = 1e-4, 2e-4
 
 
 def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | None = None) -> xr.Dataset:
-    """What happens to a model in a scenario: the Dataset of `transient` with the figures of `read_off`.
+    """What happens to a model in a scenario: the Dataset of `transient` with peaks, travels and contacts.
 
     ``scenario``: as `load_scenario` gives it, or the name of a kind or of a file, which is loaded as it is.
     ``schedule`` (event, time) is what was done; attributes name scenario, gear and what is worth looking at.
