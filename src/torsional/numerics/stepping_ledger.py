@@ -46,12 +46,15 @@ def _nodal(masses: Masses, state: State, trial: Trial, ledger: Array) -> float:
 
 
 @summed()
-def _damped(plan_damping: Array, before: Array, now: Connections, h: float, moving: bool, ledger: Array) -> float:
+def _damped(
+    plan_damping: Array, before: Array, now: Connections, h: float, moving: bool, ledger: Array, passed: Array
+) -> float:
     """Loss in dampers, booked; that in hinges closed all along, given back; and the work of what rates count from."""
     damped, all_of_it = 0.0, 0.0
     for e in range(now.twist.size):
         slipped = (now.twist[e] - before[0, e]) * 0.5 * (now.rate[e] + before[1, e])
         damped += plan_damping[e] * slipped
+        passed[1, e] += 0.5 * abs((now.torque[e] + before[2, e]) * (now.twist[e] - before[0, e]))
         all_of_it += now.damping[e] * slipped
     struck = all_of_it - damped
     if moving:
@@ -95,10 +98,12 @@ def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledge
         at = x0 + (x1 - x0) * (y0 / (y0 - y1) if y0 != y1 else 0.5)
         if was:
             ledger[Entry.STRUCK] += 0.5 * change * (y0 * (at - x0) + max(0.0, x0) ** 2)
-            made += 0.5 * change * y0 * (at - x1)
+            own = 0.5 * change * y0 * (at - x1)
         else:
             ledger[Entry.STRUCK] += 0.5 * change * (y1 * (x1 - at) - max(0.0, x1) ** 2)
-            made += 0.5 * change * y1 * (x0 - at)
+            own = 0.5 * change * y1 * (x0 - at)
+        state.passed[0, e] += own
+        made += own
     return made
 
 
@@ -127,6 +132,7 @@ def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, le
         felt = 0.5 * (told[0] + state.law[4, l]) * turned
         if not laws.remembers[l]:
             kept = _integral(laws.address[l], values, state.connection[0, e], turned)
+            state.passed[0, e] += kept - felt
             made += kept - felt
         else:
             pressed = 0.5 * bent.memory[l] * state.law[1, l] * (told[1] - state.law[4, l])
@@ -135,6 +141,7 @@ def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, le
         ledger[Entry.WORKED] += beside
         ledger[Entry.THROUGHPUT] += abs(beside)
         ledger[Entry.RUBBED] += mean * turned + beside - felt
+        state.passed[1, e] += abs(mean * turned)
         state.law[0, l], state.law[1, l], state.law[2, l] = bent.torque[l], bent.memory[l], bent.load[l]
         state.law[3, l] += kept
         state.law[4, l] = told[1] if laws.remembers[l] else told[0]
@@ -157,7 +164,7 @@ def book(plan: Plan, state: State, w: Work, h: float) -> None:
     inertial(plan.masses, trial.acceleration, trial.left)
     made = _nodal(plan.masses, state, trial, ledger)
     turned = _turned(plan.hinges, w.bent.facing, state)
-    struck = _damped(plan.constants.damping, state.connection, w.now, h, plan.moving, ledger)
+    struck = _damped(plan.constants.damping, state.connection, w.now, h, plan.moving, ledger, state.passed)
     if turned:
         made += _struck(plan.hinges, w.bent, w.now, state, ledger)
     else:

@@ -28,12 +28,14 @@ def begin(
     memory: ArrayLike | None = None,
     reference: float | None = None,
     integral: ArrayLike | None = None,
+    step: float = SHORT,
 ) -> State:
     """The state at ``time`` [s] with coordinates q [rad] and rates v [rad/s] (n,).
 
     ``memory`` (L,) [rad] of the laws by address and ``integral`` (G,) [Nm] of the governors are zero unless given, the
     ``reference`` rotation Ω_r [rad/s] is the speed at the reference node.  M q̈ = g; where a coordinate has no mass, q̈
-    is that after a short step.  Raises ModelError for shapes that do not fit.
+    is that after a short step.  A bristle whose start is forgotten within a ``step`` [s] begins as it is after one.
+    Raises ModelError for shapes that do not fit.
     """
     n, edges, laws = plan.tape.node.size, plan.pairs.left.size, plan.laws.of.size
     governors = plan.outside.governed.proportional.size
@@ -44,6 +46,7 @@ def begin(
         connection=np.zeros((4, edges)),
         sense=np.full(plan.hinges.of.size, -1.0),
         law=np.zeros((5, laws)),
+        passed=np.zeros((2, edges)),
         integral=_fitting(0.0 if integral is None else integral, governors, "integral"),
         reference=np.zeros(3),
         ledger=np.zeros(len(Entry)),
@@ -55,7 +58,7 @@ def begin(
     weights = _weights(plan)
     _turn(plan, state, float(time), reference)
     tangent = _close(plan, state, weights)
-    _bend(plan, state, float(time))
+    _bend(plan, state, float(time), max(step, SHORT))
     _accelerate(plan, state, weights, tangent, float(time))
     stored(plan.constants, plan.masses, plan.hinges, state)
     state.ledger[Entry.THROUGHPUT] = state.ledger[Entry.KINETIC] + abs(state.ledger[Entry.STRAIN])
@@ -111,7 +114,7 @@ def _close(plan: Plan, state: State, weights: Array) -> tuple[Array, Array]:
     return stiffness, damping
 
 
-def _bend(plan: Plan, state: State, time: float) -> None:
+def _bend(plan: Plan, state: State, time: float, step: float) -> None:
     """Normal loads, torques and memories of the laws."""
     laws, loads, driven = plan.laws, plan.loads, plan.outside.driven
     values = laws.values.copy()
@@ -122,17 +125,17 @@ def _bend(plan: Plan, state: State, time: float) -> None:
             shared = loads.share[own] @ np.abs(state.connection[2, loads.of[own]])
             total = loads.constant[e] * level + loads.centrifugal[e] * state.reference[1] + shared
             state.law[2, l] = values[laws.load_at[l]] = max(0.0, total)
-    _at_rest(laws, values, state.connection, state.law)
+    _at_rest(laws, values, state.connection, state.law, step)
 
 
 @uncounted()
-def _at_rest(laws: Laws, values: Array, connection: Array, law: Array) -> None:
+def _at_rest(laws: Laws, values: Array, connection: Array, law: Array, step: float) -> None:
     """Torques of the laws where no time passes; the strain energy of those without memory counts from here."""
     for l in range(laws.of.size):
         e, torque = laws.of[l], law_at(laws.address[l])
         own = values[laws.start[l] : laws.stop[l]]
         told = torque(own, connection[0, e], connection[1, e], law[1, l], 0.0)
-        soon = torque(own, connection[0, e], connection[1, e], law[1, l], SHORT)
+        soon = torque(own, connection[0, e], connection[1, e], law[1, l], step)
         if laws.remembers[l] and soon[7] < 0.5:  # forgets its start long before a step is over
             told = soon
         rest = torque(own, connection[0, e], 0.0, law[1, l], 0.0)

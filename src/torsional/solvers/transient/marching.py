@@ -147,6 +147,7 @@ def _standing(problem: Problem, state: State, step: float) -> Standing:
             memory=state.memory[problem.plan.laws.of],
             reference=state.reference,
             integral=state.integral if state.integral.size else 0.0,
+            step=step,
         )
     if state.step == step:
         return state.standing
