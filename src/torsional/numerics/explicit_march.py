@@ -169,7 +169,7 @@ def explicit_march(
     knots = np.concatenate([equations.driven.level_time, equations.frame_time])
     stops = np.unique(np.concatenate([grid, knots[(knots > grid[0]) & (knots < grid[-1])]]))
     kept = np.isin(stops, grid).astype(np.int64)
-    kinds = np.unique([n, *range(2 * n, at.size + 1)])
+    kinds = np.unique([n, *range(2 * n, at.memories + 1), at.size])  # memories together: some are no more than rounding
     control = np.array([tolerance, 1e-6 * (grid[-1] - grid[0]), 1.0, 0.0, 0.0, most_steps])
     if not _march(equations, at, stops, kept, states, kinds, control):
         found = f"{control[3]:g} steps taken"
