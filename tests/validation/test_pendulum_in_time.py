@@ -9,7 +9,7 @@ from scipy.special import ellipk
 
 from torsional.absorbers import CentrifugalPendulum
 from torsional.absorbers.pendulum import flattening, path_end
-from torsional.components import Inertia
+from torsional.components import Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.numerics.pendulum_path import pendulum_terms, weight_terms
 from torsional.powertrain import Powertrain
@@ -94,3 +94,20 @@ def test_at_standstill_a_pendulum_swings_between_the_ends_of_its_path(path: str)
     arc = DISTANCE * data.twist.sel(element="pendulum.suspension").values
     assert data.attrs["status"] == "complete"
     assert 0.9 * path_end(path, ORDER, DISTANCE) < np.abs(arc).max() < path_end(path, ORDER, DISTANCE)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("options", [{}, {"stop": 0.008}])
+def test_a_run_begins_with_pendulums_in_the_middle_of_their_paths(options: dict[str, float]) -> None:
+    """The carrier is wound up by the mean torque, by five times the length of the path here."""
+    pendulum = CentrifugalPendulum("rotor", MASS, DISTANCE, ORDER, **options)  # type: ignore[arg-type]
+    parts = {
+        "rotor": Inertia(INERTIA),
+        "load": Inertia(3.0),
+        "shaft": Shaft("load", "rotor", 200.0),
+        "pendulum": pendulum,
+    }
+    line = assemble(Powertrain(parts))
+    driven = Excitation(("rotor",), [0.0, 3.0], SPEED, [[100.0, 20.0]])
+    data = transient(line, driven, 0.2, hold="load", output=1e-3)
+    assert float(data.twist.sel(element="shaft")[0]) == pytest.approx(0.5, rel=1e-3)
+    assert np.abs(data.twist.sel(element="pendulum.suspension").values).max() < 0.05

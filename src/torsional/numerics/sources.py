@@ -102,6 +102,8 @@ def profile_at(driven: Driven, p: int, angle: float) -> tuple[float, float]:
     per_angle = count / (TURN * driven.period[p])
     place = angle * per_angle
     place -= count * np.floor(place / count)
+    if not place >= 0.0:  # the motion has grown beyond all numbers
+        return place, place
     i = min(int(place), count - 1)
     x, c = place - i, driven.profile[first + i]
     slope = c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from torsional.engine import SliderCrank
 from torsional.errors import ModelError
@@ -186,17 +187,17 @@ def _balanced_twists(system: System, load: Array, hold: str, size: float) -> Arr
     return settled(system, load - free @ np.linalg.lstsq(free, load, rcond=None)[0] if free.size else load)
 
 
-def _carrying(system: System) -> Array:
+def _carrying(system: System) -> NDArray[np.bool_]:
     c = system.connections
     return np.asarray((c.stiffness > 0) | np.array([law is not None and law.carries_mean_torque for law in c.laws]))
 
 
 def angles_of(system: System, twist: Array, hold: str) -> Array:
-    """Coordinates [rad] with given twists of the connections (smallest ones where friction alone says them), the node
-    ``hold`` at rest."""
-    carrying = _carrying(system)
-    w = system.connections.weights
-    q = np.asarray(np.linalg.lstsq(w[carrying], twist[carrying], rcond=None)[0])
+    """Coordinates [rad] with given twists of the connections (smallest ones where friction alone says them), pendulums
+    in the middle of their paths, the node ``hold`` at rest."""
+    c = system.connections
+    told = _carrying(system) | (c.centrifugal_stiffness > 0)
+    q = np.asarray(np.linalg.lstsq(c.weights[told], twist[told], rcond=None)[0])
     return at_rest(system, q, hold)
 
 
