@@ -137,6 +137,14 @@ def checked_engine(model: Model) -> Engine:
     return model.engine
 
 
+def common_orders(
+    model: Model, speed: float, torque: float, highest_order: float, base_order: float | None = None
+) -> Array:
+    """Orders from 0 to the highest, in multiples of the one that the cylinders have in common, or of ``base_order``."""
+    base = base_order or common_order(model, speed, torque)
+    return np.asarray(base * np.arange(int(highest_order / base + 1e-9) + 1))
+
+
 def engine_load(
     model: Model,
     speed: tuple[float, float],
@@ -148,8 +156,7 @@ def engine_load(
     engine = checked_engine(model)
     speeds = np.linspace(*speed, SPEEDS) if torque is not None else _knots(model, speed)
     torques = np.full(len(speeds), torque) if torque is not None else full_load(model, speeds)
-    base = base_order or common_order(model, float(speeds.mean()), float(torques.mean()))
-    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    orders = common_orders(model, float(speeds.mean()), float(torques.mean()), highest_order, base_order)
     found = engine.excitation(model.landmarks.throws, speeds, torques, orders)
     return Load.over_speed(found)
 
@@ -164,8 +171,7 @@ def engine_torque_load(
     """The engine's load over mean torque [Nm] at one speed [rad/s]."""
     engine = checked_engine(model)
     torques = np.linspace(*torque, TORQUES)
-    base = base_order or common_order(model, speed, float(torques.mean()))
-    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    orders = common_orders(model, speed, float(torques.mean()), highest_order, base_order)
     found = engine.excitation(model.landmarks.throws, speed, torques, orders)
     return Load.through(found.nodes, orders, torques, found.torque)
 

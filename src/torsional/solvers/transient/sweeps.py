@@ -13,7 +13,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.periodic.machine import checked_engine, common_order
+from torsional.solvers.periodic.machine import checked_engine, common_orders
 from torsional.solvers.transient.problem import Drives
 from torsional.solvers.transient.steady import HIGHEST_ORDER, steady_state
 from torsional.system import System, assemble
@@ -103,8 +103,7 @@ def engine_drive(
     """The engine's orders at one ``speed`` [rad/s] and mean ``torque`` [Nm] on the throws of a ``model``, in multiples
     of the order that its cylinders have in common, or of ``base_order``."""
     engine = checked_engine(model)
-    base = base_order or common_order(model, speed, torque)
-    orders = base * np.arange(int(highest_order / base + 1e-9) + 1)
+    orders = common_orders(model, speed, torque, highest_order, base_order)
     return engine.excitation(model.landmarks.throws, speed, torque, orders)
 
 
