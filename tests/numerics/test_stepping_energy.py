@@ -178,3 +178,13 @@ def test_a_stiff_curve_makes_energy_and_that_is_told(step: float) -> None:
 def test_a_ledger_that_overflows_is_told() -> None:
     found = marched(equations([1.0], [Link([1.0], 100.0)]), 0.0, 1e160, 1.0, 100, MEMBERS["newmark"])
     assert found.status == Status.NOT_FINITE
+
+
+@pytest.mark.parametrize(("own", "share"), [(0.0, 1.0), (2.5e-4, 0.5), (6e-4, 0.0)])
+def test_what_the_guard_takes_is_told_apart_from_what_contacts_lose(own: float, share: float) -> None:
+    """A contact that stays closed, ringing under a load: half a step of 1 ms, of which it has a part of its own."""
+    pressed = equations([1.0], [Link([1.0], hinges=[wall(0.0, 1e6, own)])], [Push([1.0], level=((0.0,), (1e3,)))])
+    found = marched(pressed, 1.5e-3, 0.0, 0.1, 100, MEMBERS["newmark"])
+    struck, taken = found.records.ledger[-1, Entry.STRUCK], found.state.passed[2, 0]
+    assert struck > 0.01
+    assert taken == pytest.approx(share * struck, rel=1e-12)

@@ -108,6 +108,20 @@ def _struck(hinges: HingeRows, bent: Bent, now: Connections, state: State, ledge
 
 
 @uncounted()
+def _guarded(hinges: HingeRows, bent: Bent, now: Connections, state: State) -> None:
+    """Loss in the contact times that the guard gave beyond the contacts' own, by connection."""
+    for i in range(hinges.of.size):
+        more = hinges.change[i] * (bent.contact_time[i] - hinges.contact_time[i])
+        if more > 0.0:
+            e, torque = hinges.of[i], 0.0
+            if state.sense[i] > 0.0:
+                torque += more * state.connection[1, e]
+            if bent.facing[i] * hinges.side[i] > 0.0:
+                torque += more * now.rate[e]
+            state.passed[2, e] += 0.5 * torque * (now.twist[e] - state.connection[0, e])
+
+
+@uncounted()
 def _integral(address: int, values: Array, start: float, turned: float) -> float:
     """Integral of a law's torque at rest over an angle, after Gauss."""
     torque, total = law_at(address), 0.0
@@ -161,6 +175,7 @@ def _stiffened(centrifugal: Array, more: float, twist: Array, before: Array, led
 def book(plan: Plan, state: State, w: Work, h: float) -> None:
     """Enter a step into the ledger, before the state moves on; the laws' part of the state moves on with it."""
     trial, ledger = w.trial, state.ledger
+    _guarded(plan.hinges, w.bent, w.now, state)
     inertial(plan.masses, trial.acceleration, trial.left)
     made = _nodal(plan.masses, state, trial, ledger)
     turned = _turned(plan.hinges, w.bent.facing, state)

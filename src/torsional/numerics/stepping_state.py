@@ -69,13 +69,13 @@ class Settings(NamedTuple):
 class State(NamedTuple):
     """Where a march stands: copied by `march`, never changed in place.
 
-    ``coordinates`` (4, n): q [rad], q̇, q̈, and the method's own a.  ``external`` and ``inertial`` (n,): torques of all
-    sources, and M q̈.  ``connection`` (4, E): twist, rate, torque of spring, hinges and damper, and offset of the rate.
-    ``sense`` (H,): 1 closed, −1 open.  ``law`` (5, L): torque, memory, normal load, strain energy, and its elastic
-    tangent or, without a memory, its torque at rest.  ``passed`` (2, E): energy that the method made at each
-    connection, and all that went through it.  ``integral`` (G,) of the governors.  ``reference`` (3,): Ω_r
-    [rad/s], Ω², the frame's speed.  ``ledger`` by `Entry`, ``counts`` by `Count`; ``begin`` (1,) is the time of base
-    step 0 [s].
+    ``coordinates`` (4, n): q [rad], q̇, q̈, and the method's own a. ``external`` and ``inertial`` (n,): torques of
+    all sources, and M q̈. ``connection`` (4, E): twist, rate, torque of spring, hinges and damper, and offset of the
+    rate. ``sense`` (H,): 1 closed, −1 open. ``law`` (5, L): torque, memory, normal load, strain energy, and its
+    elastic tangent or, without a memory, its torque at rest. ``passed`` (3, E): energy that the method made at each
+    connection, all that went through it, and what contact times given by the guard took. ``integral`` (G,) of the
+    governors. ``reference`` (3,): Ω_r [rad/s], Ω², the frame's speed. ``ledger`` by `Entry`, ``counts`` by `Count`;
+    ``begin`` (1,) is the time of base step 0 [s].
     """
 
     coordinates: Array
