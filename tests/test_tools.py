@@ -32,7 +32,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
 def package(folder: Path, **modules: str) -> Path:
     """A small package below a folder."""
     (folder / "torsional").mkdir()
-    for name, text in {"__init__": "_HOMES = {\n}\n", **modules}.items():
+    for name, text in {"__init__": "", **modules}.items():
         (folder / "torsional" / f"{name}.py").write_text(text, encoding="utf-8")
     return folder
 
@@ -102,6 +102,7 @@ def test_structure_counts_circles_and_places_of_laws(tools: dict[str, ModuleType
     found = tools["structure"].figures(here)
     assert found["import circles"] == [["torsional/a.py", "torsional/b.py"]]
     assert (found["modules"], found["functions"], found["median function body"]) == (4, 1, 2)
+    assert found["public names"] == {"of torsional": 0, "of its packages": 0, "of all modules": 2, "with methods": 2}
     assert found["places of laws"]["Stribeck's curve"] == ["torsional/laws/one.py:1 f"]
 
 

@@ -101,9 +101,9 @@ def _following(uses: dict[str, set[str]], file: str) -> set[str]:
 
 def public_names(names: Names) -> dict[str, int]:
     """Names without an underscore: those of ``torsional`` itself, of its packages, of all modules, and with members."""
-    text = (names.sources / "torsional" / "__init__.py").read_text(encoding="utf-8")
-    homes = re.search(r"_HOMES = \{(.*?)\n\}", text, re.DOTALL)
-    offered = sum(len(part.split()) for part in re.findall(r': ((?:\s*"[^"]*"\s*)+),', homes[1])) if homes else 0
+    stub = names.sources / "torsional" / "__init__.pyi"
+    tree = ast.parse(stub.read_text(encoding="utf-8")) if stub.is_file() else ast.Module([], [])
+    offered = sum(len(node.names) for node in tree.body if isinstance(node, ast.ImportFrom))
     listed = {
         name.value
         for file, tree in names.trees.items()
