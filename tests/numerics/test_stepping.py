@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 from tests.numerics.stepping_models import Link, Push, equations, sine
 
 from torsional.errors import ModelError
+from torsional.laws import LuGre
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Count, March, Settings, Status, begin, march
@@ -125,15 +128,24 @@ def test_second_order_with_contacts(name: str) -> None:
 # --- marches in pieces ---
 
 
-def test_pieces_give_the_same_bits() -> None:
-    plan, method = prepare(rattling()), MEMBERS["chung_hulbert_0.8"]
+def pressed() -> Equations:
+    """Bristles that other springs press: their normal load changes with every step."""
+    law = LuGre(1e3, 3.0, 2.0, breakaway_torque=3.0, stribeck_rate=0.1)
+    links = [Link([1.0, -1.0], 400.0, 0.4), Link([0.0, 1.0], 50.0, 1.0)]
+    links += [Link([1.0, -1.0], law=law, load=(0.2, 0.0, [(0, 0.05)]))]
+    return equations([1.0, 0.5], links, [Push([1.0, 0.0], level=((0.0,), (20.0,)), samples=sine(0.2), multiple=9.0)])
+
+
+@pytest.mark.parametrize("of", [rattling, pressed])
+def test_pieces_give_the_same_bits(of: Callable[[], Equations]) -> None:
+    plan, method = prepare(of()), MEMBERS["chung_hulbert_0.8"]
     for settings in (Settings(), Settings(rungs=4, angle_error=1e-8)):
         whole = march(plan, method, 1e-3, 300, begin(plan, 0.0, 0.0), settings=settings)
         state, parts = begin(plan, 0.0, 0.0), []
         for count in (1, 99, 0, 200):
             part = march(plan, method, 1e-3, count, state, settings=settings, at=range(1, count + 1))
             state, parts = part.state, [*parts, part.records]
-        for name in ("time", "q", "v", "acceleration", "torque", "ledger"):
+        for name in ("time", "q", "v", "acceleration", "torque", "load", "ledger"):
             pieces = np.concatenate([getattr(part, name) for part in parts])
             assert np.array_equal(getattr(whole.records, name)[1:], pieces), name
         assert whole.count(Count.STEPS) == state.counts[Count.STEPS]

@@ -27,6 +27,8 @@ def new_work(plan: Plan, state: State) -> Work:
     connections, hinges, laws = plan.pairs.left.size, plan.hinges.of.size, plan.laws.of.size
     sources, governors = plan.outside.driven.multiple.size, state.integral.size
     cranks = plan.outside.driven.crank_rows.start.size - 1
+    values, pressed = plan.laws.values.copy(), plan.laws.load_at >= 0
+    values[plan.laws.load_at[pressed]] = state.law[2, pressed]
     bent = Bent(
         facing=state.sense * plan.hinges.side,
         contact_time=np.zeros(hinges),
@@ -36,7 +38,7 @@ def new_work(plan: Plan, state: State) -> Work:
         slope=np.zeros(laws),
         built=np.zeros(laws),
         drag=np.zeros(laws),
-        values=plan.laws.values.copy(),
+        values=values,
     )
     counts = (sources, sources, governors, governors, cranks, cranks)
     driving = Driving._make([*(np.zeros(count) for count in counts), np.ones(laws), np.zeros(4)])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +14,9 @@ from torsional.components import Coupling, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.files import load_model
-from torsional.laws import Hinges
+from torsional.laws import Contacts, Hinges, Jenkins, LuGre
 from torsional.powertrain import Powertrain
+from torsional.results import load_results, save_results
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.operating import operated
 from torsional.solvers.transient import Governor, OrderTorques, SpeedProfile, State, TorqueHistory, transient
@@ -144,14 +147,39 @@ def test_energy_is_kept_account_of(radius: float) -> None:
 # --- going on ---
 
 
-def test_a_run_in_two_parts_is_one_run() -> None:
-    system, drive = pair(), thirds(50.0)
-    whole = transient(system, drive, 0.1, hold="b")
-    first = transient(system, drive, 0.05, hold="b")
-    second = transient(system, drive, 0.05, first, hold="b")
-    assert second.time.values[[0, -1]].tolist() == pytest.approx([0.05, 0.1])
-    # accelerations are found anew, which is felt in the order of the step's own error
-    np.testing.assert_allclose(second.twist.values[-1], whole.twist.values[-1], rtol=2e-5)
+def rubbing() -> System:
+    """Stops that are struck, bristles under a load, washers, a governor to come."""
+    parts = {
+        "a": Inertia(1.8),
+        "b": Inertia(1.2),
+        "s": Coupling("b", "a", Contacts.between(-0.002, 0.002, 2e5, 1e-5), damping=4.0),
+        "rub": Coupling("b", "a", LuGre(1e4, 3.0, 5.0, breakaway_torque=6.0, stribeck_rate=0.1)),
+        "washer": Coupling("b", "a", Jenkins(5e3, 4.0)),
+    }
+    return assemble(Powertrain(parts))
+
+
+def test_a_stored_run_goes_on_to_the_last_bit(tmp_path: Path) -> None:
+    governor = Governor("a", SPEED, acts_on="a", proportional=20.0, integral=200.0, low=-500.0, high=500.0)
+    system, drives = rubbing(), [OrderTorques(thirds(50.0), feedback=True), governor]
+    whole, first = (transient(system, drives, time, "rest", hold="b") for time in (0.1, 0.05))
+    save_results(first, tmp_path / "first.nc")
+    second = transient(system, drives, 0.05, load_results(tmp_path / "first.nc"), hold="b")
+    assert np.ptp(whole.twist.sel(element="s").values) > 0.004 and second.sizes["time"] == 501
+    for name in ("angle", "angular_velocity", "acceleration", "torque", "memory", "energy", "end_standing"):
+        late = whole[name].values[-501:] if "time" in whole[name].dims else whole[name].values
+        np.testing.assert_array_equal(second[name].values, late, err_msg=name)
+    np.testing.assert_array_equal(second.time.values, whole.time.values[-501:])
+
+
+@pytest.mark.parametrize("other", [{"spectral_radius": 0.5}, {"drives": thirds(60.0)}], ids=str)
+def test_from_a_run_by_another_method_or_under_other_torques_it_begins_afresh(other: dict[str, Any]) -> None:
+    system, given = pair(), {"drives": thirds(50.0), "hold": "b"}
+    first = transient(system, time=0.05, **given)
+    second = transient(system, time=0.05, start=first, **given | other)
+    assert float(second.energy.sel(share="sources")[0]) == 0.0 != float(first.energy.sel(share="sources")[-1])
+    plain = State.ending(first, system)
+    np.testing.assert_array_equal(second.angle, transient(system, time=0.05, start=plain, **given | other).angle)
 
 
 def test_samples_and_names_that_are_kept() -> None:

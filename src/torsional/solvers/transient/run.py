@@ -18,6 +18,7 @@ from torsional.solvers.transient.honesty import honest
 from torsional.solvers.transient.marching import COMPLETE, Accuracy, Marched, marched
 from torsional.solvers.transient.presented import joined, kept, presented
 from torsional.solvers.transient.problem import Drives, Levels, Problem
+from torsional.solvers.transient.resuming import resumable, resumed
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.solvers.transient.starts import State, starting
 from torsional.system import System
@@ -59,9 +60,10 @@ def transient(
     ``drives``: an `Excitation` (its orders keep to the mean rotation) or any of `OrderTorques`, `CylinderTorques`,
     `TorqueHistory`, `Governor`, or several.  ``start``: "equilibrium" under the mean torques (default), "vibrating"
     (the linear response), "rest", a `State`, the result of another run, or one motion of `harmonic_response` or
-    `periodic_response`.  ``speed`` [rad/s]: the mean speed or a `SpeedProfile`, default that of the excitation.
-    ``hold``: the node that takes up the mean torque where no spring to the ground does.  ``levels`` {name: (times,
-    values)} that normal loads follow.
+    `periodic_response`; from a result with the same drives and settings it goes on to the last bit, its ledger too.
+    ``speed`` [rad/s]: the mean speed or a `SpeedProfile`, default that of the excitation.  ``hold``: the node that
+    takes up the mean torque where no spring to the ground does.  ``levels`` {name: (times, values)} that normal loads
+    follow.
     ``reference``: node whose speed counts for centrifugal forces; with ``reference_time`` [s] the dampers to ground
     follow it.  ``step`` [s], ``method`` (chung_hulbert, hht, bossak, newmark; "explicit" chooses its steps by
     ``tolerance``), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
@@ -96,11 +98,13 @@ def transient(
     notes = {"switched": words} if (words := _switching(problem)) else {}
     step = _fitting(step, time)
     run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)
+    state = resumed(start, state, problem, run.accuracy)
     moments = wanted(output, time)
     told = run.over(state, time, moments) if isinstance(moments, float) else run.at(state, time, moments)
     notes |= honest(problem, told, run.accuracy)
     settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
-    return presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
+    found = presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
+    return resumable(found, problem, told.end, run.accuracy)
 
 
 def _switching(problem: Problem) -> str:
