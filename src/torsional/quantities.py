@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.units import QUANTITIES
@@ -24,6 +25,7 @@ def _as(values: xr.DataArray, quantity: str, **attrs: str) -> xr.DataArray:
     return values.rename(quantity).assign_attrs(told)
 
 
+@checked
 def acceleration(angle: xr.DataArray) -> xr.DataArray:
     """Angular acceleration orders −(nΩ)² θ_n [rad/s²], complex 0-peak, from angle orders over speed.
 
@@ -35,6 +37,7 @@ def acceleration(angle: xr.DataArray) -> xr.DataArray:
     return _as(found.transpose(*angle.dims), "acceleration", amplitude="complex 0-peak")
 
 
+@checked
 def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
     """Speed fluctuation orders i nΩ θ_n [rad/s], complex 0-peak."""
     found = 1j * angle.order * angle.speed * angle
@@ -48,6 +51,7 @@ def cycles(orders: xr.DataArray) -> int:
     return next((n for n in counts if np.allclose(n * halves, np.round(n * halves), rtol=0.0, atol=1e-9)), 1)
 
 
+@checked
 def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``.
 
@@ -67,6 +71,7 @@ def _synthesized(values: ComplexArray, phase: Array) -> Array:
     return np.asarray(values.real @ np.cos(phase) - values.imag @ np.sin(phase))
 
 
+@checked
 def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     """Half the peak-to-peak swing of the signal over one cycle, phases kept."""
     rest = [dim for dim in orders.dims if dim != "order"]
@@ -80,11 +85,13 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     return xr.DataArray(half, dims=rest, coords=coords, name=orders.name, attrs=attrs)
 
 
+@checked
 def bound(orders: xr.DataArray) -> xr.DataArray:
     """Σ_n |X_n|: no signal with these orders swings further; it is a bound and not the swing."""
     return abs(orders).sum("order").assign_attrs({**orders.attrs, "amplitude": "bound, sum of 0-peak orders"})
 
 
+@checked
 def amplitude(orders: xr.DataArray, order: float) -> xr.DataArray:
     """|X_n| of one order, 0-peak; raises ModelError for an order that was not computed."""
     if float(order) not in orders.order.values:
@@ -93,6 +100,7 @@ def amplitude(orders: xr.DataArray, order: float) -> xr.DataArray:
     return abs(orders.sel(order=float(order))).assign_attrs({**orders.attrs, "amplitude": "0-peak"})
 
 
+@checked
 def irregularity(angle: xr.DataArray) -> xr.DataArray:
     """Cyclic irregularity (ω_max − ω_min)/ω_mean [-] of each node, by its own mean speed.
 
@@ -103,12 +111,14 @@ def irregularity(angle: xr.DataArray) -> xr.DataArray:
     return _as(found, "irregularity", amplitude="peak-to-peak over mean")
 
 
+@checked
 def order_share(orders: xr.DataArray, order: float) -> xr.DataArray:
     """Share [-] of one order in the oscillation's mean square, |X_n|² / Σ|X|²."""
     power = abs(orders) ** 2
     return _as(power.sel(order=float(order)) / power.sum("order"), "energy_share")
 
 
+@checked
 def dominant_element(modes: xr.Dataset) -> xr.DataArray:
     """The connection with the largest share of each mode's elastic energy, by name ("" for rigid rotation)."""
     share = modes.elastic_share
@@ -116,6 +126,7 @@ def dominant_element(modes: xr.Dataset) -> xr.DataArray:
     return xr.DataArray(np.where(modes.frequency.values > 0, names, ""), dims="mode", coords={"mode": modes.mode})
 
 
+@checked
 def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[str]:
     """A name for each mode by where its elastic energy is: the group with the largest share, else the connection.
 
@@ -135,6 +146,7 @@ def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[
     return names
 
 
+@checked
 def order_speed(frequency: xr.DataArray, order: float) -> xr.DataArray:
     """The engine speed [rad/s] at which an engine order meets a frequency [Hz]: Ω = 2π f/n (20 f rpm for the third)."""
     return _as(2 * np.pi * frequency / order, "speed")

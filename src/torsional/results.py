@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.units import QUANTITIES
 
@@ -58,6 +59,7 @@ def _described(quantity: str) -> dict[str, str]:
     return {"units": entry.unit, "long_name": entry.long_name, "quantity": quantity}
 
 
+@checked
 def save_results(result: xr.Dataset, path: str | Path) -> Path:
     """Write a Dataset as netCDF 4; complex values become a last dimension of real and imaginary part.
 
@@ -83,6 +85,7 @@ def _split(values: xr.DataArray) -> xr.Variable:
     return xr.Variable((*values.dims, COMPLEX), pair, {**values.attrs, "complex": "yes"})
 
 
+@checked
 def load_results(path: str | Path) -> xr.Dataset:
     """Read what `save_results` wrote, complex values joined again; raises ModelError for anything else."""
     try:

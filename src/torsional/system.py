@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.numerics.arrays import Array
@@ -172,6 +173,7 @@ class System:
         return dataclasses.replace(self, connections=settled)
 
 
+@checked
 def assemble(powertrain: Powertrain) -> System:
     """A powertrain as arrays: one loop over its stamps, rigid conditions eliminated.
 

@@ -10,6 +10,7 @@ from torsional.absorbers.base import Absorber
 from torsional.absorbers.spring_design import SpringFlywheel, detailed, fitting, whole
 from torsional.absorbers.spring_parts import SAME, CoilSpring, GuideFriction
 from torsional.absorbers.spring_row import Row, guided, loads
+from torsional.arguments import checked
 from torsional.components import Component, checks
 from torsional.errors import ModelError
 
@@ -115,6 +116,7 @@ def _added(
     return load[0] + centrifugal, {name: load[1].get(name, 0.0) + shares.get(name, 0.0) for name in names}
 
 
+@checked
 def arc_spring_flywheel(design: ArcSprings) -> Absorber:
     """A dual mass flywheel with arc springs in full detail, for time-domain analyses.
 

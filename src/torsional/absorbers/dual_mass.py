@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from torsional.absorbers.base import Absorber
+from torsional.arguments import checked
 from torsional.components import Component, Coupling, Inertia
 from torsional.laws import Law
 
 
+@checked
 def dual_mass_flywheel(primary_inertia: float, secondary_inertia: float, law: Law, damping: float = 0.0) -> Absorber:
     """Primary and secondary flywheel [kgm²] with a spring ``law`` and viscous ``damping`` [Nms/rad] between.
 

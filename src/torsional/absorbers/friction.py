@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from torsional.absorbers.base import Absorber
+from torsional.arguments import checked
 from torsional.components import Coupling
 from torsional.errors import ModelError
 from torsional.laws import Law
 
 
+@checked
 def with_friction(absorber: Absorber, law: Law) -> Absorber:
     """Any absorber of one row of springs with a friction ``law`` beside them, named after them: ``dmf_friction``.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from torsional.absorbers.base import Absorber
+from torsional.arguments import checked
 from torsional.components import checks
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Law
@@ -216,6 +217,7 @@ def flattening(path: Path, order: float) -> float:
     return {"circular": 0.0, "cycloid": 1.0}.get(path, order / math.sqrt(1 + order**2))
 
 
+@checked
 def with_pendulum(absorber: Absorber, pendulum: CentrifugalPendulum) -> Absorber:
     """Any absorber with a pendulum on one of its bodies.
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.dual_mass import dual_mass_flywheel
+from torsional.arguments import checked
 from torsional.components import PlanetSpin
 from torsional.laws import Law
 from torsional.stamps import SpeedSwitch
 
 
+@checked
 def planetary_dual_mass_flywheel(
     primary_inertia: float,
     secondary_inertia: float,

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 
 from torsional.absorbers.base import Absorber
+from torsional.arguments import checked
 from torsional.components import Component, Coupling, Inertia, PlanetSpin, Superposition
 from torsional.components.checks import number
 from torsional.errors import ModelError
 from torsional.laws import Law
 
 
+@checked
 def power_split_absorber(
     primary_inertia: float,
     secondary_inertia: float,
@@ -52,6 +54,7 @@ def power_split_absorber(
     return Absorber("power split absorber", components, "primary", "output", ("springs",), nodes)
 
 
+@checked
 def cancellation_frequency(
     stiffness: float, secondary_inertia: float, planet_inertia: float, planet_ratio: float, gear_quotient: float
 ) -> float:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from torsional.absorbers.base import Absorber
+from torsional.arguments import checked
 from torsional.components import Inertia
 
 
+@checked
 def single_mass_flywheel(inertia: float) -> Absorber:
     """A rigid flywheel of ``inertia`` [kgm²], clutch cover included.
 

@@ -12,6 +12,7 @@ from torsional.absorbers.dual_mass import dual_mass_flywheel
 from torsional.absorbers.spring_curves import Rising, both_ways, pressed, side_by_side
 from torsional.absorbers.spring_parts import SAME, GuideFriction
 from torsional.absorbers.spring_row import Pair, Row, guided, loads, sprung
+from torsional.arguments import checked
 from torsional.components import Component, Coupling, Inertia, checks
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges
@@ -119,6 +120,7 @@ class SpringFlywheel(ABC):
             )
 
 
+@checked
 def characteristic(design: SpringFlywheel) -> Hinges:
     """The frictionless static law between the flywheels: rows side by side, in each tabs and springs in series.
 
@@ -147,6 +149,7 @@ def detailed(design: SpringFlywheel) -> Absorber:
     return Absorber(design.kind, parts | design.rubbing(), "primary", "secondary", ("dmf",), ("primary", "secondary"))
 
 
+@checked
 def condensed(design: SpringFlywheel) -> Absorber:
     """Two bodies with the frictionless characteristic between them, for linear and periodic analyses.
 

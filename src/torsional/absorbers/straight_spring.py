@@ -11,6 +11,7 @@ from torsional.absorbers.base import Absorber
 from torsional.absorbers.spring_design import SpringFlywheel, detailed, fitting, pair, whole
 from torsional.absorbers.spring_parts import SAME, CoilSpring
 from torsional.absorbers.spring_row import Pair, Row
+from torsional.arguments import checked
 from torsional.components import checks
 from torsional.errors import ModelError
 
@@ -148,6 +149,7 @@ class StraightSprings(SpringFlywheel):
         return (*gaps, solid), (*stiffnesses, self.bind_stiffness)
 
 
+@checked
 def straight_spring_flywheel(design: StraightSprings) -> Absorber:
     """A dual mass flywheel with straight springs in full detail, for time-domain analyses.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.dual_mass import dual_mass_flywheel
+from torsional.arguments import checked
 from torsional.components import Component, Coupling, Inertia, Shaft
 from torsional.laws import Law
 
@@ -24,6 +25,7 @@ def _absorber(carrier: str, inertia: float, stiffness: float, damping: float) ->
     return {"tva": Inertia(inertia), "tva_spring": Shaft(carrier, "tva", stiffness, damping)}
 
 
+@checked
 def tuned_flange_flywheel(
     primary_inertia: float,
     flange_inertia: float,
@@ -58,6 +60,7 @@ def tuned_flange_flywheel(
     return Absorber("dual mass flywheel with flange absorber", components, "primary", "secondary", springs, nodes)
 
 
+@checked
 def tuned_secondary_flywheel(
     primary_inertia: float,
     secondary_inertia: float,

@@ -6,6 +6,7 @@ import copy
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.load import rebuilt
 from torsional.files.reader import parse_tree
@@ -16,6 +17,7 @@ from torsional.units import quoted
 Edit = str | Mapping[str, Any]
 
 
+@checked
 def changed(model: Model, *edits: Edit) -> Model:
     """A copy of a model with values of its document changed and everything checked again.
 

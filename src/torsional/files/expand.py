@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from torsional.absorbers import CentrifugalPendulum
+from torsional.arguments import checked
 from torsional.components import (
     Component,
     Coupling,
@@ -43,6 +44,7 @@ _TYPES: dict[type, str] = {
 }
 
 
+@checked
 def expanded(model: Model) -> dict[str, Any]:
     """A model as a document of components, in SI, that makes the same matrices when it is read as a model file.
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from torsional.arguments import checked
 from torsional.engine import Engine
 from torsional.engine.excitation import checked_nodes
 from torsional.errors import ModelError, nearest
@@ -33,6 +34,7 @@ _NEEDS = {
 }
 
 
+@checked
 def load_model(path: str | os.PathLike[str]) -> Model:
     """The model that a YAML or JSON file describes, checked; files it names are read from its own folder.
 

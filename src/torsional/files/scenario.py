@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.files.edit import changed, parsed_edit, put
 from torsional.files.faults import translated
@@ -22,6 +23,7 @@ from torsional.units import quoted
 SUFFIXES = (".yaml", ".yml", ".json")
 
 
+@checked
 def load_scenario(source: str | os.PathLike[str], changes: Sequence[str] = ()) -> Scenario:
     """The scenario of a file, or the named kind as it is by default; ``changes`` are texts path=value.
 

@@ -12,6 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import not_negative, positive
@@ -129,6 +130,7 @@ class Contacts(Law):
         return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
 
 
+@checked
 def contact_time(restitution: float, stiffness: float, inertia: float) -> float:
     """The contact time τ [s] at which an ``inertia`` [kgm²] leaves a contact with that share of its speed.
 

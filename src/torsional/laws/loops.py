@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from torsional.arguments import checked
 from torsional.laws.base import Law
 from torsional.laws.checks import positive
 from torsional.numerics.arrays import Array
@@ -19,6 +20,7 @@ class Loop(NamedTuple):
     loss: float
 
 
+@checked
 def hysteresis_loop(
     law: Law, amplitude: float, *, centre: float = 0.0, frequency: float = 1.0, cycles: int = 2, samples: int = 4000
 ) -> Loop:

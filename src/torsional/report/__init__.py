@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 
 __all__ = ["write_report"]
 
 
+@checked
 def write_report(
     models: Model | Sequence[Model],
     path: str | Path,

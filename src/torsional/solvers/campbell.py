@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
@@ -21,6 +22,7 @@ CANDIDATES = np.arange(0.5, 12.5, 0.5)
 NOTABLE = 0.05
 
 
+@checked
 def campbell(
     model: Model,
     torque: float | None = None,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array
@@ -60,6 +61,7 @@ class OperatingPoint:
         return self.names.index(name)
 
 
+@checked
 def equilibrium(system: System, torques: Mapping[str, ArrayLike], hold: str) -> OperatingPoint:
     """Mean twist of every connection under mean ``torques`` {node: Nm}, taken up at the node ``hold``.
 
@@ -121,6 +123,7 @@ def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) 
     return OperatingPoint(c.names, torque, angle, stiffness, damping, c.laws)
 
 
+@checked
 def linearize(system: System, point: OperatingPoint) -> System:
     """The same system with each law replaced by its tangents at one operating point; friction sticks.
 

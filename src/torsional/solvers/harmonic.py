@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
@@ -19,6 +20,7 @@ from torsional.solvers.modal import natural_frequencies
 from torsional.system import System
 
 
+@checked
 def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
     """Steady response of a linear ``system`` to the orders of an ``excitation`` over its speeds.
 

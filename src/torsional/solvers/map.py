@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
@@ -21,6 +22,7 @@ from torsional.system import System, assemble
 HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
 
 
+@checked
 def response_map(
     model: Model,
     speed: ArrayLike | None = None,

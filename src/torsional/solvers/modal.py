@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.numerics.arrays import Array
 from torsional.numerics.modal_kernel import Modes, modes
 from torsional.numerics.quadratic_eigen import damped_modes as quadratic_modes
@@ -13,6 +14,7 @@ from torsional.solvers.checks import linear
 from torsional.system import System
 
 
+@checked
 def modal(system: System, speed: float = 0.0) -> xr.Dataset:
     """Undamped modes at a mean ``speed`` [rad/s], rigid rotations first, with their energies.
 
@@ -60,6 +62,7 @@ def modal(system: System, speed: float = 0.0) -> xr.Dataset:
     )
 
 
+@checked
 def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
     """Damped modes at a mean ``speed`` [rad/s]: (M λ² + C λ + K + Ω²S) φ = 0, without loss factors.
 

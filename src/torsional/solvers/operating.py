@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Landmarks, Model
 from torsional.solvers.equilibrium import OperatingPoint, equilibrium, linearize
@@ -33,6 +34,7 @@ def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoin
     return equilibrium(system, dict.fromkeys(marks.throws, share), hold=marks.load)
 
 
+@checked
 def operated(model: Model, torque: float, gear: str | int | None = None) -> tuple[System, OperatingPoint]:
     """The linear system about the mean engine ``torque`` [Nm] in one ``gear``, and that operating point.
 

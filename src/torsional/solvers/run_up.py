@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
@@ -20,6 +21,7 @@ from torsional.solvers.operating import mean_state
 from torsional.system import System, assemble
 
 
+@checked
 def run_up_response(
     model: Model,
     speed: ArrayLike | None = None,
@@ -38,6 +40,9 @@ def run_up_response(
         raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
     speeds = np.atleast_1d(model.speeds(141) if speed is None else np.asarray(speed, dtype=float))
     carried = full_load(model, speeds) if torque is None else np.asarray(torque, dtype=float)
+    if carried.shape not in ((), (1,), speeds.shape):
+        found = f"{carried.size} torques and {speeds.size} speeds"
+        raise ModelError("one torque is wanted, or one for each speed", where="torque", found=found)
     torques = np.broadcast_to(carried, speeds.shape)
     n = np.atleast_1d(np.asarray(orders, dtype=float))
     system = assemble(model.powertrain(gear or None))
@@ -65,6 +70,7 @@ def run_up_response(
     ).assign_coords(speed_ratio=("node", system.speed_ratio))
 
 
+@checked
 def full_load_response(
     model: Model,
     speed: ArrayLike | None = None,

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array, IntArray
 from torsional.units import QUANTITIES
@@ -118,6 +119,7 @@ def _monotone(points: IntArray, value: Array) -> Iterator[IntArray]:
     yield from (points[first : last + 1] for first, last in pairwise(edges))
 
 
+@checked
 def coexisting(result: xr.Dataset) -> list[tuple[Range, list[int]]]:
     """Ranges of the parameter in which more than one motion is stable, with the branches they belong to.
 
@@ -136,6 +138,7 @@ def coexisting(result: xr.Dataset) -> list[tuple[Range, list[int]]]:
     return [(span, here) for span, here in found if len(here) > 1 and span[1] - span[0] > least]
 
 
+@checked
 def without_stable(result: xr.Dataset) -> list[Range]:
     """Ranges of the parameter in which no stable motion was found: what happens there is on no branch that is known."""
     value = result.value.values
@@ -148,6 +151,7 @@ def without_stable(result: xr.Dataset) -> list[Range]:
     return [*found, (reached, float(value.max()))] if value.max() - reached > least else found
 
 
+@checked
 def solutions_at(result: xr.Dataset, value: float) -> xr.Dataset:
     """Every motion at one ``value`` of the continued parameter: the points of the branches there, along ``point``.
 

@@ -8,6 +8,7 @@ from itertools import groupby
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.numerics.arrays import Array
 
 FINE = 20
@@ -59,6 +60,7 @@ def crossings(found: xr.Dataset, torque: float) -> Array:
     return np.concatenate(met)
 
 
+@checked
 def stretches(found: xr.Dataset, row: int) -> Iterator[tuple[slice, float, float]]:
     """Neighbouring speeds with sub-harmonic vibration at one torque, and the speeds [rad/s] between which it lies.
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.results import dataset
@@ -18,6 +19,7 @@ MARGIN = 0.15
 Progress = Callable[[int, int], None]
 
 
+@checked
 def sought_region(
     model: Model,
     speeds: Array,
@@ -89,6 +91,7 @@ def full_load_curve(model: Model, low: float, high: float) -> xr.DataArray | Non
     return found
 
 
+@checked
 def within(found: xr.Dataset) -> xr.Dataset:
     """The same map with nothing in the cells above full load."""
     over = [name for name, values in found.data_vars.items() if {"torque", "speed"} <= set(values.dims)]

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
@@ -40,6 +41,7 @@ MOVES = 0.01
 """Share of the sweep by which a rubbing part without memory must swing to count as sliding."""
 
 
+@checked
 def hysteresis(
     system: System,
     turned: str,
@@ -86,12 +88,13 @@ def hysteresis(
     return _told(bench, runs, speeds, sweeps, (turned, held), rate=rate, centre=centre)
 
 
+@checked
 def model_hysteresis(
     model: Model,
     speed: ArrayLike,
     sweep: ArrayLike,
     *,
-    gear: str | None = None,
+    gear: str | int | None = None,
     turned: str = "",
     held: str = "",
     rate: float = RATE,

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.model import Model
@@ -30,6 +31,7 @@ SAME = 5e-3
 """Distance, in shares of the ranges, within which a bifurcation is taken for one of a curve that is known."""
 
 
+@checked
 def subharmonic_boundary(
     model: Model,
     speed: tuple[float, float],

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.engine import Engine
 from torsional.errors import ModelError
 from torsional.files import changed
@@ -28,6 +29,7 @@ SPEEDS, TORQUES = 9, 65
 """Operating points that the engine is asked for: over speed it is a parabola, over torque it has corners."""
 
 
+@checked
 def model_response(
     model: Model,
     speed: Range | None = None,
@@ -68,6 +70,7 @@ def model_response(
     return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
 
 
+@checked
 def varied_response(
     model: Model,
     path: str,
@@ -141,7 +144,12 @@ def common_orders(
     model: Model, speed: float, torque: float, highest_order: float, base_order: float | None = None
 ) -> Array:
     """Orders from 0 to the highest, in multiples of the one that the cylinders have in common, or of ``base_order``."""
-    base = base_order or common_order(model, speed, torque)
+    base = common_order(model, speed, torque) if base_order is None else base_order
+    if not 0 < base <= highest_order:
+        found, allowed = f"{base:g} and {highest_order:g}", "0 < base_order <= highest_order"
+        raise ModelError(
+            "orders go up from the base order to the highest", where="orders", found=found, allowed=allowed
+        )
     return np.asarray(base * np.arange(int(highest_order / base + 1e-9) + 1))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.laws import Hinges
@@ -54,6 +55,7 @@ class Variation:
     build: Callable[[float], System]
 
 
+@checked
 def periodic_response(
     system: System,
     excitation: Excitation | Load,

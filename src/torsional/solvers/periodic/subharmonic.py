@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, IntArray
@@ -30,6 +31,7 @@ PROBES = 3
 """Points between two events at which the stability is worked out."""
 
 
+@checked
 def subharmonic_map(
     model: Model,
     speed: ArrayLike,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.laws import hinge_rows
 from torsional.numerics.arrays import Array
@@ -12,6 +13,7 @@ from torsional.results import dataset
 from torsional.system import System
 
 
+@checked
 def stage_changes(system: System, run: xr.Dataset) -> xr.Dataset:
     """Every passage of a spring from one stage to another in a ``run`` of `transient`, in the order of time.
 

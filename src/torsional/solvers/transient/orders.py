@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.engine.orders import CYCLE
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
@@ -16,6 +17,7 @@ SAMPLES = 16
 WINDOWS = ("none", "hann")
 
 
+@checked
 def orders_in_time(
     signal: xr.DataArray,
     crank_angle: xr.DataArray,
@@ -97,6 +99,7 @@ def _kernel(order: Array, angle: Array, window: str) -> ComplexArray:
     return np.asarray(turns * np.where(order > 0, 2.0, 1.0))
 
 
+@checked
 def windowed_rms(signal: xr.DataArray, window: float) -> xr.DataArray:
     """Root mean square of a ``signal`` about its own mean in successive windows [s], at the middle of each.
 
@@ -120,6 +123,7 @@ def windowed_rms(signal: xr.DataArray, window: float) -> xr.DataArray:
     return xr.DataArray(blocks.std(axis=1), dims=values.dims, coords=coords, name=signal.name, attrs=attrs)
 
 
+@checked
 def crank_angle_of(run: xr.Dataset, node: str) -> xr.DataArray:
     """The angle [rad] that a node has turned by itself, over its mean speed ratio: the crank angle of a run-up by the
     engine's own torque."""

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.solvers.transient.honesty import honest
@@ -35,6 +36,7 @@ MOST_SAMPLES = 100_000
 """Samples of a run that does not say how many it wants."""
 
 
+@checked
 def transient(
     system: System,
     drives: Drives,

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import dataset
@@ -23,6 +25,7 @@ WANDERING = 64
 """Periods over which the orders of a motion that never repeats itself are taken."""
 
 
+@checked
 def steady_state(
     system: System,
     drives: Drives,
@@ -69,9 +72,22 @@ def steady_state(
     >>> found.attrs["status"]
     'periodic, repeats itself after 2 periods of the drive'
     """
+    counts = {"longest": (longest, 1), "most_periods": (most_periods, 1), "parts": (parts, 0)}
+    sizes = {"highest_order": highest_order, "tolerance": tolerance, "base_order": base_order}
+    _refuse_settings(counts, {name: value for name, value in sizes.items() if value is not None})
     problem = Problem.of(system, drives, speed, hold=hold, levels=levels)
     scope = stroboscope(problem, Accuracy(step, method, spectral_radius), start, base_order)
     return settled(scope, highest_order, longest, most_periods, tolerance, thorough, parts)
+
+
+def _refuse_settings(counts: Mapping[str, tuple[int, int]], sizes: Mapping[str, float]) -> None:
+    """Refuse counts below their least and sizes that are not positive."""
+    for name, (count, least) in counts.items():
+        if count < least:
+            raise ModelError("too few", where=name, found=str(count), allowed=f">= {least}")
+    for name, size in sizes.items():
+        if not size > 0:
+            raise ModelError("must be positive", where=name, found=f"{size:g}", allowed="> 0")
 
 
 def stroboscope(problem: Problem, accuracy: Accuracy, start: object, base_order: float | None) -> Stroboscope:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.model import Model
@@ -23,6 +24,7 @@ PARTS = 2
 """Orders of a sweep are multiples of the base order over this."""
 
 
+@checked
 def swept(
     system: System,
     drives: Excitation | Callable[[float], Drives],
@@ -93,6 +95,7 @@ def _told(point: xr.Dataset) -> xr.Dataset:
     return point.assign({name: ((), point.attrs[name]) for name in SCALARS})
 
 
+@checked
 def engine_drive(
     model: Model,
     speed: float,
@@ -107,6 +110,7 @@ def engine_drive(
     return engine.excitation(model.landmarks.throws, speed, torque, orders)
 
 
+@checked
 def steady_map(
     model: Model,
     speeds: ArrayLike,

@@ -6,6 +6,7 @@ import math
 
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.model import Model
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.run import Progress
@@ -16,6 +17,7 @@ from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.running import run_plan
 
 
+@checked
 def run_up(
     model: Model,
     speed: float | SpeedProfile,

@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 import xarray as xr
 
+from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Scenario
@@ -29,6 +30,7 @@ STEP, OUTPUT = 1e-4, 2e-4
 """Time step, and interval of what is recorded [s], where nothing else is asked for."""
 
 
+@checked
 def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | None = None) -> xr.Dataset:
     """What happens to a model in a scenario: the Dataset of `transient` with peaks, travels and contacts.
 
