@@ -1,6 +1,7 @@
 """The public names and where they live: the one list, which type checkers, editors and the package itself read."""
 
 from .absorbers import (
+    Absorber as Absorber,
     ArcSprings as ArcSprings,
     CentrifugalPendulum as CentrifugalPendulum,
     CoilSpring as CoilSpring,
@@ -124,5 +125,6 @@ from .stamps import (
 from .studies.scenarios.run_up import run_up as run_up
 from .studies.scenarios.running import run_scenario as run_scenario
 from .system import System as System, assemble as assemble
+from .units import RPM as RPM
 
 __version__: str

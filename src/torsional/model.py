@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,10 @@ import numpy as np
 from torsional.components import Component
 from torsional.engine import Engine
 from torsional.errors import ModelError, nearest
+from torsional.notebook import components_table, html_table
 from torsional.numerics.arrays import Array
-from torsional.powertrain import Powertrain
-
-RPM = np.pi / 30
+from torsional.powertrain import Powertrain, exchanged, named
+from torsional.units import RPM
 
 
 @dataclass(frozen=True)
@@ -58,8 +59,9 @@ class Landmarks:
 class Model:
     """A machine: ``components`` common to all gears, ``gears`` by name, engine, operating range, landmarks.
 
-    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies);
-    ``detail`` the absorber's inner parts (shoes, segments, their friction), which take their places with `detailed`.
+    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies), empty
+    once anything else was changed in Python; ``detail`` the absorber's inner parts (shoes, segments, their friction),
+    which take their places with `detailed`.
     """
 
     name: str
@@ -130,12 +132,46 @@ class Model:
         """The model as time-domain analyses take it, the absorber's inner parts in place; itself where it has none."""
         return replace(self, components={**self.components, **self.detail}, detail={}) if self.detail else self
 
-    def replaced(self, **changes: Any) -> Model:
-        """A copy with some fields changed."""
-        return replace(self, **changes)
+    def replaced(self, part: str = "", component: Component | None = None, /, **changes: Any) -> Model:
+        """A copy with one component exchanged or some of its fields changed, by its name; else with own fields changed.
+
+        ``truck.replaced("dmf", law=springs)`` gives the coupling "dmf" another law.  Parts that stand in one gear alone
+        belong to ``gears``.  No model file describes the copy: `torsional.changed` comes first, parts afterwards.
+        Raises ModelError for a part or a field that is not there.
+        """
+        own = {"components": exchanged(self.components, part, component, changes)} if part else changes
+        return replace(self, **{"document": {}, **own})
+
+    def joined(self, parts: Mapping[str, Component]) -> Model:
+        """A copy with more components, in every gear; raises ModelError for a name that is taken."""
+        taken = {*self.components, *(name for gear in self.gears.values() for name in gear.components)} & {*parts}
+        if taken:
+            raise ModelError("the name is taken", where=min(taken), remedy="choose another name, or use replaced")
+        return self.replaced(components={**self.components, **parts})
+
+    def without(self, *names: str) -> Model:
+        """A copy without some components, in every gear; raises ModelError for a name that is not there."""
+        for name in names:
+            _ = named(self.components, name)
+        return self.replaced(components={name: c for name, c in self.components.items() if name not in names})
+
+    def __repr__(self) -> str:
+        gears = f", gears {', '.join(self.gears)}" if self.gears else ""
+        kind = f", {self.absorber}" if self.absorber else ""
+        return f"<Model '{self.name}': {len(self.components)} components{kind}{gears}>"
+
+    def _repr_html_(self) -> str:
+        marks = ((key, value) for key, value in vars(self.landmarks).items() if value)
+        rows = [[key, ", ".join([value] if isinstance(value, str) else value)] for key, value in marks]
+        places = html_table("Landmarks", ["of analyses", "where"], rows)
+        parts = components_table("Components in every gear", self.components)
+        return f"<p>{escape(repr(self)[1:-1])}</p>{places}{parts}"
 
     @property
     def hash(self) -> str:
         """Sixteen hexadecimal digits that tell this model from every other (of its document, or of its parts)."""
-        told = json.dumps(self.document, sort_keys=True, default=str) if self.document else repr(self)
+        told = json.dumps(self.document, sort_keys=True, default=str) if self.document else repr(self._values())
         return hashlib.sha256(told.encode()).hexdigest()[:16]
+
+    def _values(self) -> list[object]:
+        return [getattr(self, told.name) for told in fields(self)]

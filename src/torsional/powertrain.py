@@ -10,6 +10,7 @@ from typing import Any
 
 from torsional.components import Component
 from torsional.errors import ModelError, nearest
+from torsional.notebook import components_table
 from torsional.stamps import GROUND, Stamp
 from torsional.structure import Structure, resolve
 
@@ -82,25 +83,14 @@ class Powertrain:
 
     def __getitem__(self, name: str) -> Any:
         """The component of that name."""
-        if name not in self.components:
-            raise ModelError(f"there is no component '{name}'", where=name, remedy=nearest(name, self.components))
-        return self.components[name]
+        return named(self.components, name)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.components)
 
     def replaced(self, name: str, component: Component | None = None, **changes: Any) -> Powertrain:
         """A copy with one component exchanged, or with some of its fields changed."""
-        old = self[name]
-        fields = [field.name for field in dataclasses.fields(old)] if dataclasses.is_dataclass(old) else []
-        for key in changes:
-            if key not in fields:
-                raise ModelError(f"'{name}' has no field '{key}'", where=f"{name}.{key}", remedy=nearest(key, fields))
-        try:
-            new = component or dataclasses.replace(old, **changes)
-        except ModelError as error:
-            raise error.located(prefix=name) from None
-        return Powertrain({**self.components, name: new}, self.parts, self.reference)
+        return Powertrain(exchanged(self.components, name, component, changes), self.parts, self.reference)
 
     def joined(self, parts: Mapping[str, Component]) -> Powertrain:
         """A copy with more components; a name that is taken is refused."""
@@ -121,6 +111,34 @@ class Powertrain:
             values = {key: getattr(part, key) for key in names}
             rows.append({"name": name, "kind": type(component).__name__, **values})
         return rows
+
+    def __repr__(self) -> str:
+        return f"<Powertrain: {len(self.components)} components on {len(self.nodes)} nodes>"
+
+    def _repr_html_(self) -> str:
+        return components_table(repr(self)[1:-1], self.components)
+
+
+def exchanged(
+    components: Mapping[str, Component], name: str, component: Component | None, changes: Mapping[str, Any]
+) -> dict[str, Component]:
+    """Components with one of them exchanged for another ``component``, or with ``changes`` of its fields."""
+    old = named(components, name)
+    fields = [field.name for field in dataclasses.fields(old)] if dataclasses.is_dataclass(old) else []
+    for key in changes:
+        if key not in fields:
+            raise ModelError(f"'{name}' has no field '{key}'", where=f"{name}.{key}", remedy=nearest(key, fields))
+    try:
+        return {**components, name: component or dataclasses.replace(old, **changes)}
+    except ModelError as error:
+        raise error.located(prefix=name) from None
+
+
+def named(components: Mapping[str, Component], name: str) -> Any:
+    """One component; raises ModelError with the nearest name."""
+    if name not in components:
+        raise ModelError(f"there is no component '{name}'", where=name, remedy=nearest(name, components))
+    return components[name]
 
 
 def _checked_name(name: object, component: object) -> None:

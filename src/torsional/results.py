@@ -1,4 +1,4 @@
-"""Results: xarray Datasets with named dimensions, units and provenance; saved as netCDF and loaded again."""
+"""Results: xarray Datasets with named dimensions, units and provenance; saved as netCDF or CSV, and loaded again."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import xarray as xr
 
 from torsional.arguments import checked
 from torsional.errors import ModelError
+from torsional.spreadsheet import BYTE_ORDER_MARK, csv_text
 from torsional.units import QUANTITIES
 
 Variable = tuple[tuple[str, ...], Any, str]
@@ -60,24 +61,40 @@ def _described(quantity: str) -> dict[str, str]:
 
 
 @checked
-def save_results(result: xr.Dataset, path: str | Path) -> Path:
-    """Write a Dataset as netCDF 4; complex values become a last dimension of real and imaginary part.
+def save_results(result: xr.Dataset | xr.DataArray, path: str | Path) -> Path:
+    """Write a result, or one quantity of it, whole as netCDF 4 (.nc) or as a table for spreadsheets (.csv).
 
-    The file appears whole or not at all: it is written beside its place and then moved there.
+    In netCDF complex values become a last dimension of real and imaginary part; `load_results` reads it back.  A table
+    has a row for each place in the grid, a column for each variable and node or connection, and units in its headings:
+    SI, speeds in rpm as well.  Its rows are those of the first variable; what lies over other dimensions is left out.
+
+    The file appears whole or not at all: it is written beside its place and then moved there.  Raises ModelError for
+    any other ending.
     """
     target = Path(path)
-    if target.suffix not in (".nc", ".nc4"):
-        allowed = "a name ending in .nc"
-        raise ModelError("results are saved as netCDF", where="path", found=repr(str(target)), allowed=allowed)
-    parts = {name: _split(v) if np.iscomplexobj(v) else v.variable for name, v in result.data_vars.items()}
-    plain = xr.Dataset(parts, result.coords, result.attrs)
+    if target.suffix.lower() not in _WRITERS:
+        told = {"found": repr(str(target)), "allowed": "a name ending in .nc, or in .csv for spreadsheets"}
+        raise ModelError("results are saved as netCDF or CSV", where="path", **told)
+    data = result.to_dataset(name=result.name or "value") if isinstance(result, xr.DataArray) else result
     partial = target.with_name(f".{target.name}.partial")
     try:
-        plain.to_netcdf(partial, engine="h5netcdf")
+        _WRITERS[target.suffix.lower()](data, partial)
         partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
     return target
+
+
+def _write_netcdf(data: xr.Dataset, target: Path) -> None:
+    parts = {name: _split(v) if np.iscomplexobj(v) else v.variable for name, v in data.data_vars.items()}
+    xr.Dataset(parts, data.coords, data.attrs).to_netcdf(target, engine="h5netcdf")
+
+
+def _write_table(data: xr.Dataset, target: Path) -> None:
+    target.write_text(BYTE_ORDER_MARK + csv_text(data), encoding="utf-8", newline="")
+
+
+_WRITERS = {".nc": _write_netcdf, ".nc4": _write_netcdf, ".csv": _write_table}
 
 
 def _split(values: xr.DataArray) -> xr.Variable:

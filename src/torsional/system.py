@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.laws import Law
+from torsional.notebook import html_table
 from torsional.numerics.arrays import Array
 from torsional.numerics.null_space import transformed
 from torsional.powertrain import Powertrain
 from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch, Swing
 from torsional.structure import weight_rows
+from torsional.units import show
 
 BoolArray = NDArray[np.bool_]
 
@@ -129,6 +131,18 @@ class System:
             told.update(array.tobytes())
         return told.hexdigest()[:16]
 
+    def __repr__(self) -> str:
+        bent = f", with laws: {', '.join(name for name, _, _ in self.elements)}" if self.elements else ", linear"
+        return f"<System: {len(self.nodes)} nodes, {len(self.coordinates)} coordinates{bent}>"
+
+    def _repr_html_(self) -> str:
+        m, c = self.masses, self.connections
+        discs = [[name, show(float(inertia), "inertia")] for name, inertia in zip(m.names, m.inertia, strict=True)]
+        columns = zip(c.names, c.stiffness, c.damping, c.laws, strict=True)
+        springs = [[n, *_told(k, d), "" if law is None else type(law).__name__] for n, k, d, law in columns]
+        headings = ["connection", "stiffness", "damping", "law"]
+        return html_table(repr(self)[1:-1], ["mass", "inertia"], discs) + html_table("", headings, springs)
+
     def shares_linear_part(self, other: System) -> bool:
         """Whether two systems differ in nothing but their laws."""
         mine, theirs = ((s.connections, s.masses) for s in (self, other))
@@ -171,6 +185,10 @@ class System:
             laws[i] = law.loaded(load.at(speed, known))
         settled = dataclasses.replace(c, laws=tuple(laws), loads=(None,) * len(laws))
         return dataclasses.replace(self, connections=settled)
+
+
+def _told(stiffness: float, damping: float) -> tuple[str, str]:
+    return show(float(stiffness), "stiffness"), show(float(damping), "damping")
 
 
 @checked

@@ -13,7 +13,10 @@ import re
 from torsional.errors import ModelError, nearest
 from torsional.nomenclature import CANONICAL, QUANTITIES, UNITS, Quantity, pretty
 
-__all__ = ["QUANTITIES", "UNITS", "Quantity", "convert", "plausible", "quoted", "read", "read_range", "show"]
+__all__ = ["QUANTITIES", "RPM", "UNITS", "Quantity", "convert", "plausible", "quoted", "read", "read_range", "show"]
+
+RPM = math.pi / 30
+"""One revolution per minute in rad/s: ``1500 * RPM`` is a speed, and ``speed / RPM`` a number of rpm."""
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _LONGEST = 120

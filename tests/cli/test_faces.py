@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from torsional.cli.documents import csv_text, escaped, json_text, neutral
+from torsional.cli.documents import escaped, json_text
 from torsional.cli.tables import Column, Table, plain
 from torsional.results import dataset
+from torsional.spreadsheet import csv_text, neutral
 
 Run = Callable[..., Any]
 

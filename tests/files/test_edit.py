@@ -89,7 +89,7 @@ def test_a_change_that_cannot_be_is_refused(edit: str, message: str) -> None:
 
 
 def test_a_model_without_a_file_cannot_be_changed_by_paths() -> None:
-    with pytest.raises(ModelError, match="the model did not come from a model file"):
+    with pytest.raises(ModelError, match="no model file describes this model"):
         changed(Model("m", {}, Landmarks()), "a=1")
 
 

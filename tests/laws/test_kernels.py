@@ -20,6 +20,7 @@ from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Karnopp, Law, LuG
 from torsional.numerics.callbacks import law_at
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
+from torsional.solvers.periodic.equations import packed
 from torsional.system import assemble
 
 LAWS: dict[str, Law] = {
@@ -208,6 +209,40 @@ def test_kernels_that_are_none_are_refused() -> None:
     ):
         with pytest.raises(ModelError, match=said):
             _ = law.address
+
+
+def test_a_kernel_that_is_none_is_told_at_its_first_torque() -> None:
+    class Short(Cubed):
+        kernel = numba.njit(lambda p, angle: p[0] * angle)
+
+    class Method(Cubed):
+        def kernel(parameters, angle, rate, memory, step):  # type: ignore[no-untyped-def, override]  # noqa: N805
+            return parameters[0] * angle, parameters[0], 0.0
+
+    for law, said in ((Short(1.0), "does not compile"), (Method(1.0), "no compiled function")):
+        with pytest.raises(ModelError, match=said):
+            law.torque(0.1)
+
+
+def test_wrong_slopes_are_found() -> None:
+    class Slipped(Cubed):
+        kernel = numba.njit(lambda p, angle, rate, memory, step: plain(p[0] * angle**3, 2 * p[0] * angle**2, p[1]))
+
+    angle = np.linspace(-0.3, 0.2, 11)
+    assert Cubed(8e5, drag=7.0).slope_error(angle, 2.0) < 1e-8
+    # told is 2 where 3 is right, a third too little of the largest; and no torque goes with the drag
+    assert Slipped(8e5, drag=0.0).slope_error(angle) == pytest.approx(1 / 3, rel=1e-6)
+    assert Slipped(8e5, drag=7.0).slope_error(angle) == pytest.approx(7.0, rel=1e-6)
+
+
+def test_parameters_may_be_any_sequence() -> None:
+    class Listed(Cubed):
+        @property
+        def parameters(self) -> Any:
+            return [self.stiffness, int(self.drag)]
+
+    assert Listed(8e5, drag=7.0).packed.tolist() == [8e5, 7.0]
+    assert packed((Listed(8e5), Listed(2.0)))[0].tolist() == [8e5, 0.0, 2.0, 0.0]
 
 
 def test_what_a_kernel_raises_is_passed_on() -> None:

@@ -12,6 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from torsional import plots
+from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.laws import Hinges
 from torsional.model import Model
@@ -94,6 +95,20 @@ def test_order_cuts_have_a_line_for_each_variant_and_order(orders: xr.DataArray)
     assert axes.lines[2].get_ydata() == pytest.approx(2 * np.asarray(axes.lines[0].get_ydata()))
     assert len(axes.get_legend().texts) == 4  # type: ignore[union-attr]
     assert axes.get_ylabel() == "acceleration [rad/s²], 0-peak"
+
+
+def test_order_lines_tell_which_dimension_is_too_much(orders: xr.DataArray) -> None:
+    one = orders.expand_dims(torque=[1500.0])
+    line = plots.plot_gears(one, 3.0).axes[0].lines[0]
+    assert np.array_equal(line.get_ydata(), plots.plot_gears(orders, 3.0).axes[0].lines[0].get_ydata())
+    two = orders.expand_dims(torque=[1500.0, 2000.0])
+    for picture in (lambda: plots.plot_gears(two, 3.0), lambda: plots.plot_order_cuts({"a": two}, "12", [3.0])):
+        with pytest.raises(ModelError, match=r"2 values of 'torque' as well; choose one: \.sel\(torque=…\)"):
+            picture()
+    with pytest.raises(ModelError, match="order 4 was not computed"):
+        plots.plot_gears(orders, 4.0)
+    with pytest.raises(ModelError, match="no dimension 'gear'"):
+        plots.plot_gears(orders.isel(gear=0), 3.0)
 
 
 def test_cycle_lies_between_the_bounds(orders: xr.DataArray) -> None:

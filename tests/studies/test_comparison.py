@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import operated
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import at_input
 from torsional.studies.claims.comparison import behind_clutch, damped
 from torsional.studies.claims.trucks import Trucks, sprung
+from torsional.units import RPM
 
 
 def solved(model: Model, speed: float, torque: float, gear: str) -> float:

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from torsional.components import Inertia
-from torsional.model import RPM
 from torsional.solvers.map import HALF_ORDERS
 from torsional.solvers.operating import operated
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import input_shaft, main_order, responded
 from torsional.studies.claims.excitation import crossing, full_load
 from torsional.studies.claims.trucks import Trucks, lumped
+from torsional.units import RPM
 
 
 def test_the_input_shaft(trucks: Trucks) -> None:

@@ -9,7 +9,6 @@ import pytest
 from scipy.linalg import expm
 
 from torsional.laws import Jenkins
-from torsional.model import RPM
 from torsional.solvers.periodic.states import states
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import at_input, mean_torque
@@ -17,6 +16,7 @@ from torsional.studies.claims.friction import AROUND, STICKING, SWEEP, WASHER, a
 from torsional.studies.claims.motions import over_speed
 from torsional.studies.claims.trucks import Trucks
 from torsional.system import assemble
+from torsional.units import RPM
 
 
 def test_hardly_any_friction_is_linear(trucks: Trucks) -> None:

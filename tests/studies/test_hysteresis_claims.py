@@ -10,7 +10,6 @@ import pytest
 from torsional.absorbers import GuideFriction
 from torsional.components import Component, Coupling, Inertia, Shaft
 from torsional.laws import Jenkins
-from torsional.model import RPM
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis
 from torsional.studies.claims import Outcome
@@ -18,6 +17,7 @@ from torsional.studies.claims.answers import mean_torque
 from torsional.studies.claims.hysteresis import PARTLY, driving_angle, long_arcs, truck_loops
 from torsional.studies.claims.trucks import Trucks, hinged
 from torsional.system import assemble
+from torsional.units import RPM
 
 
 def test_springs_that_slide_freely_need_the_friction_of_their_weight(trucks: Trucks) -> None:

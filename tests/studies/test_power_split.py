@@ -7,13 +7,13 @@ import pytest
 
 from torsional.absorbers import cancellation_frequency
 from torsional.components import PlanetSpin
-from torsional.model import RPM
 from torsional.solvers.operating import operated
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import at_input, mean_torque, responded
 from torsional.studies.claims.planetary import at_quotient_one
 from torsional.studies.claims.power_split import Parts, cancelled, damped, paths
 from torsional.studies.claims.trucks import Trucks, merged, only, replaced
+from torsional.units import RPM
 
 
 def test_c1_found_where_the_closed_form_says(trucks: Trucks) -> None:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from torsional.model import RPM
 from torsional.solvers.transient import engine_drive, swept
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import mean_torque
@@ -16,6 +15,7 @@ from torsional.studies.claims.idle import Idle, pulsed
 from torsional.studies.claims.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of
 from torsional.studies.claims.settling import STEP, Stepped, order_of, reach_of
 from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.units import RPM
 
 
 def test_a_period_is_whole_steps(trucks: Trucks) -> None:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from torsional.model import RPM
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.motions import (
     SPRING,
@@ -28,6 +27,7 @@ from torsional.studies.claims.stiffness_step import stages, stepped, transition_
 from torsional.studies.claims.strongest import Search, crest
 from torsional.studies.claims.subharmonic import quiet_speed
 from torsional.studies.claims.trucks import Trucks, hinged
+from torsional.units import RPM
 
 
 @pytest.mark.parametrize(("rpm", "vibrates"), [(825, False), (855, True), (945, True), (980, False)])

@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 from torsional.engine import Excitation
 from torsional.files import load_model
 from torsional.laws import LuGre, hinge_rows
-from torsional.model import RPM
 from torsional.solvers.transient import State, engine_drive, orders_in_time, transient
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import starting
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 SPEED = 900 * RPM
 LOADED, LIGHT = 1200.0, 60.0  # Nm: springs always pressed; shoes that leave their tabs and rattle

@@ -13,10 +13,11 @@ import xarray as xr
 
 from torsional.engine import Excitation
 from torsional.files import changed, load_model
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.solvers.periodic import model_response
 from torsional.solvers.transient import engine_drive, steady_state, swept
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 SPEEDS = (700.0, 800.0, 880.0, 940.0, 1100.0)
 TORQUES = (1000.0, 1200.0)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from torsional import __version__
-from torsional.cli.documents import csv_text, described, escaped, json_text
+from torsional.cli.documents import described, escaped, json_text
 from torsional.cli.outputs import Writer, text_writer, written
 from torsional.cli.request import Request
 from torsional.cli.tables import Table, print_tables
@@ -80,7 +80,8 @@ def _writer(answer: Answer, path: Path, text: str) -> Writer:
     data = answer.data
     assert data is not None
     if suffix == ".csv":
-        return text_writer("\ufeff" + csv_text(data if answer.columns is None else answer.columns))
+        table = data if answer.columns is None else answer.columns
+        return lambda draft: _save(table, draft)
     return lambda draft: _save(data if answer.full is None else answer.full, draft)
 
 

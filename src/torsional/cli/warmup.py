@@ -19,7 +19,7 @@ from torsional.cli.tables import Column, Table, print_tables
 from torsional.components import Component, Coupling, Inertia
 from torsional.engine import Excitation
 from torsional.files import changed, load_model, starter
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.callbacks import address_of
 from torsional.powertrain import Powertrain
 from torsional.solvers.campbell import campbell
@@ -27,6 +27,7 @@ from torsional.solvers.hysteresis import hysteresis
 from torsional.solvers.map import HALF_ORDERS, response_map
 from torsional.solvers.periodic import model_response, periodic_response, subharmonic_map
 from torsional.system import assemble
+from torsional.units import RPM
 
 Step = tuple[str, Callable[[], object]]
 _STAGES = laws.Hinges(1.0, (1.0,), (1.0,), (1.0,))

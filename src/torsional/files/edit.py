@@ -23,11 +23,11 @@ def changed(model: Model, *edits: Edit) -> Model:
 
     An edit is a text such as ``absorber.stages.0.stiffness=10kNm/rad`` or a mapping {path: value}; a value of null
     (None) removes the key, so that its default holds.  ModelError, with the nearest key, for a path or a value that
-    the model file could not have.
+    the model file could not have, and for a model whose parts were changed in Python since it was loaded.
     """
     if not model.document:
-        remedy = "change its powertrain instead: Powertrain.replaced"
-        raise ModelError("the model did not come from a model file", where=model.name, remedy=remedy)
+        remedy = "change values of the file first, or parts by Model.replaced, joined and without"
+        raise ModelError("no model file describes this model", where=model.name, remedy=remedy)
     document = copy.deepcopy(dict(model.document))
     for edit in edits:
         for path, value in [parsed_edit(edit)] if isinstance(edit, str) else edit.items():

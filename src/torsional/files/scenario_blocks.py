@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, TypeVar
 
@@ -11,9 +10,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from torsional import units
 from torsional.errors import ModelError
 from torsional.files.schema.fields import Block, Inertia, Quantity, Speed, Stiffness, Torque
+from torsional.units import RPM
 
 VERSION = 1
-RPM = math.pi / 30
 
 Time = Annotated[float, Quantity("time", above=0)]
 Moment = Annotated[float, Quantity("time", least=0)]

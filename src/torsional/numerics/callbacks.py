@@ -58,7 +58,7 @@ def address_of(kernel: Any) -> int:
         raise ModelError("a law's kernel is no compiled function", found=name, remedy="decorate it with numba.njit")
     try:
         result = kernel.get_compile_result(LAW_SIGNATURE)
-    except numba.errors.TypingError as error:
+    except (numba.errors.TypingError, TypeError) as error:
         raise ModelError("a law's kernel does not compile", found=name, remedy=str(error)) from error
     if result.signature.return_type != LAW_SIGNATURE.return_type:
         found = f"{name}, which gives {result.signature.return_type}"

@@ -31,7 +31,8 @@ def plot_map(
     [Nm] is drawn; ``limits`` of the colours in the shown unit, for maps that are to be compared.
     """
     figure, drawn = style.on(axes, (6.0, 4.2))
-    size = style.shown(values.transpose("torque", "speed"))
+    values = style.over(values, "torque", "speed")
+    size = style.shown(values)
     low, high = limits or colour_limits(size)
     ticks = SERIES[(0.999 * low <= SERIES) & (1.001 * high >= SERIES)]
     convention = str(values.attrs.get("amplitude", "")).removesuffix(" over the cycle")
@@ -54,7 +55,8 @@ def plot_ratio_map(
 ) -> Figure:
     """The ratio of two variants' amplitudes over (torque, speed): blue below one, red above, white at one."""
     figure, drawn = style.on(axes, (6.0, 4.2))
-    size = ratio.transpose("torque", "speed").values
+    ratio = style.over(ratio, "torque", "speed")
+    size = ratio.values
     ticks = np.array([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
     _draw(drawn, ratio, size, LogNorm(0.1, 10.0), style.RATIO, ticks, "ratio of the amplitudes [-]")
     _draw_contours(drawn, ratio, size, ticks, within, "black")

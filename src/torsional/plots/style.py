@@ -16,6 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.units import QUANTITIES, convert
 
@@ -130,6 +131,22 @@ def shown(values: xr.DataArray | Array, quantity: str = "") -> Array:
     entry = QUANTITIES[named]
     factor = 1.0 if entry.unit == entry.shown else convert(1.0, entry.unit, entry.shown)
     return np.asarray(values) * factor
+
+
+def over(values: xr.DataArray, *dims: str) -> xr.DataArray:
+    """Values over just these dimensions, in this order; others of a single value are dropped.
+
+    Raises ModelError for dimensions that are missing, and for further ones, with how to choose one of their values.
+    """
+    rest = {str(dim): size for dim, size in values.sizes.items() if dim not in dims and size > 1}
+    missing = [dim for dim in dims if dim not in values.dims]
+    told = f"a picture over {' and '.join(dims)} is drawn from values over them alone"
+    if missing:
+        raise ModelError(told, found=f"no dimension '{missing[0]}'")
+    if rest:
+        dim, size = next(iter(rest.items()))
+        raise ModelError(told, found=f"{size} values of '{dim}' as well", remedy=f"choose one: .sel({dim}=…)")
+    return values.squeeze([dim for dim in values.dims if dim not in dims], drop=True).transpose(*dims)
 
 
 def label(quantity: str, amplitude: str = "", name: str = "") -> str:

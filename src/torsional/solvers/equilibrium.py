@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.laws import Hinges, Law
+from torsional.notebook import operating_point_table
 from torsional.numerics.arrays import Array
 from torsional.numerics.null_space import null_vectors
 from torsional.system import System
@@ -52,6 +53,9 @@ class OperatingPoint:
         i = self._index(name)
         law = self.laws[i]
         return float("nan") if law is None else law.distance_to_stop(float(self.angle[i]), float(self.torque[i]))
+
+    def _repr_html_(self) -> str:
+        return operating_point_table(self)
 
     def _index(self, name: str) -> int:
         if name not in self.names:

@@ -13,7 +13,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.laws import Contacts, Law, LuGre, Table
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import (
     CylinderTorques,
@@ -27,6 +27,7 @@ from torsional.solvers.transient import (
 )
 from torsional.solvers.transient.marching import LEDGER
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 SPEED, TORQUE = 900 * RPM, 1200.0
 ORDERS = [0.0, 1.5, 3.0, 4.5, 6.0]

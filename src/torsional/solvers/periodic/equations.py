@@ -263,7 +263,7 @@ def balance(
 
 def packed(laws: Sequence[Law]) -> tuple[Array, IntArray, IntArray, IntArray]:
     """Parameters of all laws in a row, where each starts, addresses of kernels (0: hinges), whether they remember."""
-    values = [law.parameters for law in laws]
+    values = [law.packed for law in laws]
     starts = np.concatenate([[0], np.cumsum([v.size for v in values])])
     address = [0 if isinstance(law, Hinges) else law.address for law in laws]
     remembers = [int(law.remembers) for law in laws]

@@ -49,7 +49,7 @@ def _damping_and_stiffness(split: Split, at: Turning) -> tuple[Array, Array]:
 def stage_bases(split: Split, at: Turning = (0.0, 0.0)) -> StageBases:
     """The linear systems between the hinges, made once for all branches of a system whose laws are all hinges."""
     damping, stiffness = _damping_and_stiffness(split, at)
-    laws = [law.parameters for law in split.laws]
+    laws = [law.packed for law in split.laws]
     return StageBases(split.matrices[0], damping, stiffness, split.weights, laws, split.rigid_turning)
 
 
@@ -130,7 +130,7 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     rates = motion_at(1j * pace * np.arange(harmonics.shape[1]) * harmonics, tau)
     reference = np.stack([split.reference_stiffness, split.reference_damping], axis=1)
     if any(law.remembers for law in split.laws):
-        laws = [(law.address, np.asarray(law.parameters)) for law in split.laws]
+        laws = [(law.address, law.packed) for law in split.laws]
         remembers = np.array([int(law.remembers) for law in split.laws])
         return monodromy_remembering(
             _linear(split, False, at), laws, remembers, split.reference_stiffness, angles, rates, 2 * np.pi / pace

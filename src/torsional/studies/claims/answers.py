@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from torsional.engine import Engine
 from torsional.errors import ModelError
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration
 from torsional.results import dataset
@@ -23,6 +23,7 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import operated
 from torsional.studies.claims.trucks import reached
+from torsional.units import RPM
 
 Curves: TypeAlias = Mapping[str, ArrayLike]
 LOAD = 0.6

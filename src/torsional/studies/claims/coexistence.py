@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Explorer
 from torsional.solvers.periodic.problem import HarmonicProblem
@@ -25,6 +25,7 @@ from torsional.studies.claims.motions import (
 )
 from torsional.studies.claims.settling import Stepped, order_of
 from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.units import RPM
 
 DAMPINGS = (20.0, 15.0, 10.0, 5.0)
 """Dampings of the DMF [Nms/rad] that are asked, the shipped one first; the first with an answer is shown in time."""

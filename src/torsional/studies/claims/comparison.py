@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.components import Component
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
 from torsional.results import dataset
@@ -28,6 +28,7 @@ from torsional.studies.claims.answers import (
 )
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, mapped, reached, replaced, sprung, stiffness
+from torsional.units import RPM
 
 TORQUES = 7
 STEP = 25 * RPM

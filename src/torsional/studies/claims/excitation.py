@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.engine.orders import BoolArray
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, irregularity, order_share, swing
 from torsional.solvers.map import HALF_ORDERS
@@ -23,6 +23,7 @@ from torsional.studies.claims.answers import (
 )
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, lumped
+from torsional.units import RPM
 
 CROSSING = 0.5
 """The firing order is near a zero crossing where the engine's own is below this share of its median over speed."""

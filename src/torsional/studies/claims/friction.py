@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from torsional.components import Coupling
 from torsional.errors import ModelError
 from torsional.laws import Jenkins
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
 from torsional.solvers.periodic.states import states
@@ -21,6 +21,7 @@ from torsional.studies.claims.motions import over_speed
 from torsional.studies.claims.settling import Stepped
 from torsional.studies.claims.strongest import crest
 from torsional.studies.claims.trucks import Trucks, joined, replaced
+from torsional.units import RPM
 
 WASHER = "clutch_friction"
 STICKING = 1e5

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.absorbers import ArcSprings, CoilSpring, GuideFriction, arc_spring_flywheel
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis, model_hysteresis
@@ -16,6 +16,7 @@ from torsional.studies.claims.answers import floats, mean_torque, rising
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, hinged
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 SPEEDS = np.array([0.0, 2000.0, 4000.0]) * RPM
 LONG_SWEEPS = np.radians([2.0, 5.0, 20.0, 60.0])

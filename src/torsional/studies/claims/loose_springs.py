@@ -15,7 +15,7 @@ from torsional.absorbers.spring_parts import CoilSpring
 from torsional.absorbers.straight_spring import StraightSprings, straight_spring_flywheel
 from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.explicit_march import explicit_march
 from torsional.numerics.stepping_plan import HingeRows, Pairs, dense, mass_matrix
@@ -24,6 +24,7 @@ from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State, starting
 from torsional.studies.claims.answers import engine_of, main_order
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 DESIGN = StraightSprings(
     primary_inertia=1.035,

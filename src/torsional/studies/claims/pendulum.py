@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from torsional.absorbers import CentrifugalPendulum
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.harmonic import response
 from torsional.solvers.operating import operated
 from torsional.studies.claims.answers import INPUT, at_input, curves, floats, lowest, mean_torque, speeds
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, joined, only, replaced, without
+from torsional.units import RPM
 
 
 def quiet_order(model: Model, speed: float) -> float:

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from torsional.components import Coupling, PlanetSpin
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.solvers.map import HALF_ORDERS
 from torsional.studies.claims.answers import INPUT, at_input, curves, floats, main_order, responded, speeds
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.power_split import Parts, inertia_at
 from torsional.studies.claims.trucks import Trucks, only, replaced
+from torsional.units import RPM
 
 CRITICAL = 650 * RPM
 """A low engine speed at which a truck wants isolation [rad/s]."""

@@ -11,7 +11,7 @@ import numpy as np
 from torsional.absorbers import cancellation_frequency
 from torsional.components import Inertia, PlanetSpin, Superposition
 from torsional.engine import Excitation
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.operating import operated
@@ -32,6 +32,7 @@ from torsional.studies.claims.answers import (
 )
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, merged, only, replaced, sprung, stiffness
+from torsional.units import RPM
 
 WIDE = np.linspace(300.0, 3000.0, 136) * RPM
 """Speeds among which cancellation is looked for [rad/s]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from torsional.components import Coupling, GearPair
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import operated
 from torsional.studies.claims.answers import (
@@ -20,6 +20,7 @@ from torsional.studies.claims.answers import (
 )
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, lumped, replaced, sprung, stiffness
+from torsional.units import RPM
 
 SOFTEST = 0.5
 """Softest feasible clutch damper over the shipped one: a truck's damper ends near 0.2 rad, where it must carry the peak

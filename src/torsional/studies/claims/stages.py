@@ -9,7 +9,7 @@ import xarray as xr
 
 from torsional.errors import ModelError
 from torsional.laws import Hinges
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
 from torsional.results import dataset
@@ -18,6 +18,7 @@ from torsional.studies.claims.answers import engine_of, floats, span
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.stiffness_step import stages, transition_torque
 from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.units import RPM
 
 TORQUES = np.arange(250.0, 2501.0, 250.0)
 SPEEDS = np.arange(700.0, 1901.0, 50.0) * RPM

@@ -9,7 +9,7 @@ import numpy as np
 
 from torsional.files.scenario import load_scenario
 from torsional.laws import Hinges
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.results import dataset
 from torsional.solvers.transient.drives import Governor
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -20,6 +20,7 @@ from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.running import run_plan
 from torsional.studies.scenarios.schedule import cylinders
+from torsional.units import RPM
 
 PHASES = 4
 """Moments of the first firing, spread over 0.1 s: what the crank happens to do then is averaged out."""

@@ -9,10 +9,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
 from torsional.studies.claims.motions import amplitudes, doubled, doubling_margin, over_torque
+from torsional.units import RPM
 
 TORQUES = (700.0, 2300.0)
 """Mean torques [Nm] that are searched."""

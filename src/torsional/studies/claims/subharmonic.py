@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
@@ -34,6 +34,7 @@ from torsional.studies.claims.stiffness_step import LIGHT, SOFT, Case, cases, st
 from torsional.studies.claims.strongest import TORQUES, Peak, Search, onset
 from torsional.studies.claims.trucks import Trucks, reached, sprung, within
 from torsional.system import assemble
+from torsional.units import RPM
 
 NAMES = {SPRING: "DMF torque", SHAFT: "input torque", INPUT_ACCELERATION: "input acceleration", TWIST: "DMF twist"}
 UNITS = {SPRING: "Nm", SHAFT: "Nm", INPUT_ACCELERATION: "rad/s²", TWIST: "rad"}

@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from torsional.model import RPM
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Settings, begin, march
@@ -20,6 +19,7 @@ from torsional.studies.claims.answers import floats, sweep
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.loose_springs import SAMPLING, SPAN, LooseMotion
 from torsional.studies.claims.trucks import Trucks
+from torsional.units import RPM
 
 CONDITION = (
     "the truck's DMF with straight springs in three channels, their play 0.7° to 1°, shoes and tabs that only push, no "

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from torsional.absorbers import tuned_stiffness
-from torsional.model import RPM, Model
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
@@ -29,6 +29,7 @@ from torsional.studies.claims.answers import (
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
 from torsional.system import assemble
+from torsional.units import RPM
 
 RING, SPRING = "tva", "tva_spring"
 INERTIAS = np.geomspace(0.02, 6.0, 24)
