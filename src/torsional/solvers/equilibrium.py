@@ -44,18 +44,15 @@ class OperatingPoint:
 
     def stage(self, name: str) -> str:
         """The active stage of one connection, of an operating point at a single torque, in words."""
-        i = self._index(name)
-        law = self.laws[i]
+        law = self.laws[i := self._index(name)]
         return "linear" if law is None else law.stage_name(float(self.angle[i]))
 
     def distance_to_stop(self, name: str) -> float:
         """The way [rad] one connection has left to its stop; not a number where it has none."""
-        i = self._index(name)
-        law = self.laws[i]
+        law = self.laws[i := self._index(name)]
         return float("nan") if law is None else law.distance_to_stop(float(self.angle[i]), float(self.torque[i]))
 
-    def _repr_html_(self) -> str:
-        return operating_point_table(self)
+    _repr_html_ = operating_point_table
 
     def _index(self, name: str) -> int:
         if name not in self.names:
