@@ -38,6 +38,8 @@ COMPARISONS: dict[type[ast.AST], tuple[str, tuple[str, ...]]] = {
 }
 LEFT_ALONE = re.compile(r"Error$|partial$|njit|uncounted|inlined|warn|cast$")
 """Calls whose arguments are words, types or settings of the compiler."""
+GENEROUS = 16
+"""Counts from here on are likely to be limits of passes or numbers of samples."""
 TINY = 1e-5
 """Constants below this are tolerances and guards: a mutant there that survives may well do what the source did."""
 
@@ -133,8 +135,9 @@ class _Finder:
         if isinstance(value, bool):
             yield self.made(place, "constant", self.span(node), str(not value))
         elif isinstance(value, int):
+            why = "a count that may be generous" if value >= GENEROUS else ""
             for other in (value + 1, value - 1):
-                yield self.made(place, "constant", self.span(node), str(other) if other >= 0 else f"({other})")
+                yield self.made(place, "constant", self.span(node), str(other) if other >= 0 else f"({other})", why)
         elif isinstance(value, float):
             why = "a tolerance or a guard" if 0.0 < value < TINY else ""
             for new in (f"(2.0 * {text})", f"(0.5 * {text})") if value else ("1.0",):
