@@ -42,8 +42,26 @@ def test_a_stop_that_the_step_cannot_follow_is_told(settings: dict[str, object])
     coarse, fine = (between_stops(step, **settings) for step in (2e-5, 1e-7))
     assert abs(coarse.angular_velocity.values[-1, 0]) < 0.5
     assert "stops" in coarse.attrs["guarded"] and "took away" in coarse.attrs["energy_error"]
+    assert coarse.attrs["damped"] == coarse.attrs["guarded"]
     assert abs(fine.angular_velocity.values[-1, 0]) == pytest.approx(1.0, abs=3e-5)
-    assert not {"guarded", "energy_error", "refined"} & set(fine.attrs)
+    assert not {"guarded", "damped", "energy_error", "refined"} & set(fine.attrs)
+
+
+def loose(large: float, beside: float) -> xr.Dataset:
+    """A small mass of 3 g m² between stops, behind which a spring holds it or not, beside a large swinging one."""
+    stops = Coupling("large", "small", Contacts.between(-0.01, 0.01, 1e6, 0.0))
+    parts = {"large": Inertia(large), "base": Shaft("ground", "large", 1e4 * large), "small": Inertia(0.003)}
+    parts |= {"stops": stops, "held": Shaft("large", "small", beside)}
+    line = assemble(Powertrain(parts))
+    return transient(line, (), 0.5, State.at_rest(line).moved(0.0, np.array([2.0, 2.0])), speed=0.0)
+
+
+@pytest.mark.parametrize(("beside", "told"), [(1.0, True), (1e4, False)])
+def test_a_guard_that_brings_a_small_mass_to_rest_is_told_however_little_that_is(beside: float, told: bool) -> None:
+    """Loose, it loses at its stops what reaches it; held by a spring that never meets them it loses nothing."""
+    data = loose(1000.0, beside)
+    assert "stops" in data.attrs["guarded"] and abs(data.attrs["method_share"]) < 1e-3
+    assert ("stops" in data.attrs.get("damped", "")) is told
 
 
 def test_a_pulse_shorter_than_the_step_and_a_chattering_governor_are_told() -> None:

@@ -14,6 +14,8 @@ THIN = 1.3
 """Largest dimension of stroboscopic points that lie on a closed curve."""
 APART = 30.0
 """How much better a motion repeats itself after its own period than after fewer."""
+EVEN = 0.1
+"""Share of the mean step by which the steps of a drift differ at most."""
 NOTHING = 1e-3
 """Share of the tolerance below which a difference is taken for none."""
 FEWEST = 200
@@ -42,6 +44,7 @@ class Character:
             "multiple": f"periodic, repeats itself after {self.periods} periods of the drive",
             "quasi-periodic": "quasi-periodic: never repeats itself, yet neighbouring motions stay together",
             "chaotic": f"chaotic: neighbouring motions part by a factor of {np.exp(self.exponent):.3g} a period",
+            "drifting": f"drifts: it moves on evenly by {self.left:.1e} of itself a period, as a part does that creeps",
             "unsettled": f"not settled yet: {self.left:.1e} of the motion changes from period to period",
         }
         return told[self.kind]
@@ -68,6 +71,22 @@ def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple
             return k, left
         best = min(best, left)
     return 0, best
+
+
+def restless(points: Array, size: float, longest: int) -> float:
+    """The largest difference of the last ``longest`` points from those one period before, over the motion's size."""
+    return _left(points, size, longest, 1) if len(points) > longest else np.inf
+
+
+def drifts(points: Array, longest: int) -> bool:
+    """Whether the last ``longest`` points follow each other in even steps along a line.
+
+    >>> drifts(np.arange(20.0)[:, None], 8), drifts(np.sin(np.arange(20.0))[:, None], 8)
+    (True, False)
+    """
+    steps = np.diff(points[-longest - 1 :], axis=0)
+    mean = steps.mean(axis=0)
+    return bool(np.linalg.norm(steps - mean, axis=1).max() < EVEN * np.linalg.norm(mean))
 
 
 def _left(points: Array, size: float, longest: int, k: int) -> float:

@@ -52,7 +52,8 @@ def steady_state(
     ``longest``, within ``tolerance`` of the motion's size in the norm of energy; k is ``periods`` in the attributes.
     After ``most_periods`` without, the largest Lyapunov exponent from two neighbouring runs, and the dimension of the
     stroboscopic points, tell quasi-periodic from chaotic motion (not asked where not ``thorough``).  The step is made
-    to fit the period.  Everything else as in `transient`; the frame keeps one speed.
+    to fit the period, and halved where that ends changes from period to period below 2 % (``refined``).  Everything
+    else as in `transient`; the frame keeps one speed.
 
     ``angle`` (order, node) [rad], ``twist`` and ``torque`` (order, element) complex 0-peak, order 0 the mean, orders
     multiples of the base order over ``parts`` (default: 2 or what the periods ask for); ``end_angle`` and so on are a
@@ -152,6 +153,7 @@ def _presented(scope: Stroboscope, told: Marched, orders: Array, character: Char
         end_time=0.0,
         end_reference=float("nan") if end.reference is None else end.reference,
         system_hash=system.hash,
+        **scope.notes,
     ).assign_coords(speed=problem.start_speed)
 
 

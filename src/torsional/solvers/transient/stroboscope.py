@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from torsional.numerics.arrays import Array
-from torsional.solvers.transient.character import Character, dimension, named, repeats
+from torsional.solvers.transient.character import Character, dimension, drifts, named, repeats, restless
 from torsional.solvers.transient.marching import Accuracy, Marched, marched
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State, grounded, tangents
@@ -25,6 +25,8 @@ PARTING, SKIPPED = 300, 50
 MAPPED = 1500
 """Stroboscopic points for a dimension."""
 FALLING = 0.7
+LITTLE, SECOND = 0.02, 320
+"""Change from period to period, over the motion's size, that half the step is asked about; periods that it is given."""
 FURTHER = np.concatenate([-np.geomspace(1e-3, 1.0, 7), np.geomspace(1e-3, 1.0, 7)])
 """Angles [rad] at which a law that is flat in equilibrium is asked for its slope."""
 
@@ -39,6 +41,7 @@ class Stroboscope:
     base_order: float
     points: Array = field(init=False)
     size: float = field(init=False, default=0.0)
+    notes: dict[str, str] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self.points = self.seen(self.state.angle[None], self.state.speed[None])
@@ -125,12 +128,35 @@ class Stroboscope:
         half = len(history) // 2
         return 0, left, bool(left < FALLING * min(history[: half + 1]))
 
+    def _by_half_the_step(self, count: int, left: float, longest: int, tolerance: float) -> tuple[int, float]:
+        """The same where the motion does repeat itself with half the step, which is gone on with: little contacts that
+        rattle are the step's own.  What is only less with it is noted."""
+        gap, step = restless(self.points, self.size, longest), self.settled.step
+        if not tolerance < gap < LITTLE:
+            return count, left
+        twin = Stroboscope(self.problem, replace(self.accuracy, step=0.5 * step), self.state, self.base_order)
+        found, rest, _ = twin.until_periodic(longest, SECOND, tolerance)
+        finer = restless(twin.points, twin.size, longest)
+        what = f"with {step:.3g} s {gap:.1e} of the motion changes from period to period"
+        if found == 1:
+            self.accuracy, self.state, self.size = twin.accuracy, twin.state, twin.size
+            self.points = np.concatenate([self.points, twin.points[1:]])
+            self.notes["refined"] = f"step halved to {0.5 * step:.3g} s: {what}, with half of it nothing"
+            return found, rest
+        if finer < 0.5 * gap:
+            self.notes["unresolved"] = f"{what}, with half of it {finer:.1e}: take a smaller step"
+        return count, left
+
     def character(self, longest: int, most: int, tolerance: float, thorough: bool = True) -> Character:
         """What the motion is, after at most ``most`` periods; the exponent is asked of one that does not repeat itself,
         the dimension where the exponent does not decide."""
         count, left, falling = self.until_periodic(longest, most, tolerance)
+        if count > 1 or (thorough and not falling):
+            count, left = self._by_half_the_step(count, left, longest, tolerance)
         if count or not thorough or not self.size > 0:
             return named(count, left, float("nan"), float("nan"), falling)
+        if not falling and drifts(self.points, longest):
+            return Character("drifting", 0, left)
         exponent = self.exponent()
         if abs(exponent) < 0.1 and not falling:
             self.run(MAPPED)
