@@ -28,8 +28,6 @@ _ENERGIES = {
 
 RUNNING = ("tip_in", "tip_out", "clutch_engagement", "gear_shift", "traction_loss", "idle_pulse")
 """Scenarios through which an engine runs."""
-RESTING = ("engine_stop", "stall")
-"""Scenarios in which it comes to rest."""
 
 
 def seconds(text: str, option: str, default: float) -> float:
@@ -121,10 +119,8 @@ def warn_refined(run: xr.Dataset) -> None:
     for told in ("refined", "damped", "energy_error", "unresolved", "restless"):
         if told in run.attrs:
             complain(str(run.attrs[told]), kind="warning")
-    kind = run.attrs.get("scenario")
-    if kind in (*RUNNING, *RESTING):
+    if run.attrs.get("scenario") in RUNNING:
         turning = run.angular_velocity.sel(node=run.attrs["crank"])
         if float(turning.min()) <= 0:
             at = units.show(float(run.time[int((turning.values <= 0).argmax())]), "time")
-            event = "stalls" if kind in RUNNING else "comes to rest"
-            complain(f"the engine {event} at {at}: what follows is no engine's motion any more", kind="warning")
+            complain(f"the engine stalls at {at}: what follows is no engine's motion any more", kind="warning")

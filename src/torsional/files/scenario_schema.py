@@ -45,7 +45,7 @@ class EngineStop(Scenario):
 
     title: ClassVar[str] = "Engine stop"
     scenario: Literal["engine_stop"]
-    duration: Time = 2.5
+    duration: Time = 3.5
     speed: Speed | None = Field(None, description="before; default: idle")
     fuel_off: Moment = 0.2
 

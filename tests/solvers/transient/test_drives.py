@@ -39,12 +39,12 @@ def geared() -> System:
 
 
 def torque_at(acting: Acting, time: float, angle: float) -> np.ndarray:
-    """Torques of the sources on the coordinates."""
+    """Torques of the sources on the coordinates, less friction at the mean speed."""
     total = np.zeros(len(acting.sources[0].row))
     for source in acting.sources:
         value = 1.0 if source.profile is None else float(source.profile.at(source.multiple * angle + source.phase))
         total += source.row * value * (1.0 if source.level is None else float(source.level.at(time)))
-    return total
+    return total - sum(drag.row * drag.mean for drag in acting.drags)
 
 
 # --- orders ---
@@ -109,6 +109,7 @@ def test_level_goes_from_the_motored_engine_to_the_operating_point(truck: Model)
         for source in acting.sources
         if source.profile is not None
     )
+    mean -= sum(drag.row.sum() * drag.mean for drag in acting.drags)
     assert mean == pytest.approx(0.5 * (motored + TORQUE), rel=1e-6)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.stepping_data import Driven, Governed, rows_of
+from torsional.solvers.transient.drags import Drag
 from torsional.solvers.transient.profiles import Level, Profile
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.system import System
@@ -56,12 +57,14 @@ class Governing(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """All that drives do; ``taken_up``: torques over time (row, level) that belong to the mean load of the line."""
+    """All that drives do; ``taken_up``: torques over time (row, level) that belong to the mean load of the line;
+    ``drags``: friction that they bring along."""
 
     sources: tuple[Source, ...] = ()
     cranks: tuple[Crank, ...] = ()
     governors: tuple[Governing, ...] = ()
     taken_up: tuple[tuple[Array, Level], ...] = ()
+    drags: tuple[Drag, ...] = ()
 
     def joined(self, other: Acting) -> Acting:
         """Both together."""
@@ -70,6 +73,7 @@ class Acting(NamedTuple):
             self.cranks + other.cranks,
             self.governors + other.governors,
             self.taken_up + other.taken_up,
+            self.drags + other.drags,
         )
 
 

@@ -1,4 +1,4 @@
-"""The engine's cylinders as a drive in time: gas torque over the crank's own angle, reciprocating masses."""
+"""The engine's cylinders as a drive in time: gas torque over the crank's own angle, reciprocating masses, friction."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ import numpy as np
 
 from torsional.engine import Engine
 from torsional.engine.excitation import checked_nodes
-from torsional.engine.orders import crank_angle_grid
+from torsional.engine.orders import CYCLE, crank_angle_grid
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import torque_places
 from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
+from torsional.solvers.transient.drags import Drag, taken
 from torsional.solvers.transient.drives import at_start
 from torsional.solvers.transient.profiles import Level, Profile, level_of, through
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -34,10 +35,12 @@ class CylinderTorques:
     and brake ``torque`` [Nm].
 
     ``level`` over ``level_times`` [s] is the heat of combustion: 1 that of the operating point, 0 a motored engine
-    (with the intake pressure of no load), between them in proportion, friction with it.  ``feedback``: the crank's own
-    motion moves the events.  ``reciprocating``: "exact" gives −m x'(x'' θ̇² + x' θ̈) with the instantaneous speed, less
-    the half-share m r²/2 that is in the throw's inertia; "half-share" −m x' x'' Ω² at the mean speed, as in the
-    frequency domain; "none" leaves it out.  Raises ModelError for anything else, and as `Engine.operated` does.
+    (with the intake pressure of no load), between them in proportion, with the friction that its pressure adds.  The
+    friction of the motored engine acts against the crank's own speed, see `friction`, and holds it at standstill.
+    ``feedback``: the crank's own motion moves the events, and friction grows with it.  ``reciprocating``: "exact" gives
+    −m x'(x'' θ̇² + x' θ̈) with the instantaneous speed, less the half-share m r²/2 that is in the throw's inertia;
+    "half-share" −m x' x'' Ω² at the mean speed, as in the frequency domain; "none" leaves it out.
+    Raises ModelError for anything else, and as `Engine.operated` does.
     """
 
     engine: Engine
@@ -82,7 +85,7 @@ class CylinderTorques:
         """Two sources a throw, motored and burnt; one crank a cylinder, or one more source a throw."""
         rows = [row_of(system, node) for node in self.nodes]
         gas = self._gas(rows)
-        found = Acting(gas, taken_up=at_start(Acting(gas)))
+        found = Acting(gas, taken_up=at_start(Acting(gas))).joined(self._rubbing(rows, speed))
         if self.reciprocating == "exact":
             return found.joined(Acting(cranks=self._cranks(rows)))
         if self.reciprocating == "half-share":
@@ -90,16 +93,53 @@ class CylinderTorques:
         return found
 
     def profiles(self) -> tuple[tuple[Profile, ...], tuple[Profile, ...]]:
-        """Gas torque of each node less friction, motored, and what combustion adds to it."""
-        engine = self.engine
-        least = float(engine.motored_torque(self.speed))
+        """Gas torque of each node, motored, and what combustion adds to it, less what that adds to friction."""
         motored, burning = (
-            self._summed(engine.torque(self.speed, torque, crank_angle_grid(SAMPLES), reciprocating=False))
-            for torque in (least + ABOVE * abs(least), self.torque)
+            self._summed(self.engine.torque(self.speed, torque, crank_angle_grid(SAMPLES), reciprocating=False))
+            for torque in (self._motored, self.torque)
         )
-        return tuple(through(row, 2.0) for row in motored), tuple(through(row, 2.0) for row in burning - motored)
+        gas = motored + np.add(*self._parts())[:, None]
+        return tuple(through(row, 2.0) for row in gas), tuple(through(row, 2.0) for row in burning - motored)
+
+    def friction(self) -> tuple[Array, Array]:
+        """Friction of the motored engine on each node: dry [Nm], and growing with the whole speed [Nms/rad].
+
+        FMEP V/4π; dry is what it has at standstill, the rest a straight line from there to ``speed``.  Without
+        ``feedback`` all of it is dry, so that it damps no vibration.
+        """
+        dry, more = self._parts()
+        if not (self.feedback and self.speed):
+            return dry + more, np.zeros_like(more)
+        return dry, more / self.speed
+
+    @property
+    def _motored(self) -> float:
+        """Mean torque of the motored engine [Nm]."""
+        least = float(self.engine.motored_torque(self.speed))
+        return least + ABOVE * abs(least)
+
+    def _parts(self) -> tuple[Array, Array]:
+        """Friction of the motored engine on each node [Nm]: at standstill, and what its speed adds."""
+        engine = self.engine
+        arm = engine.cylinder.displacement / CYCLE
+        law = engine.friction
+        each = arm * float(law.base(engine.mean_piston_speed(self.speed)) - law.base(0.0))
+        whole = engine.mean_torque_split(self.speed, self._motored).friction
+        more = each * engine.layout.throw_members.sum(axis=1)
+        return self._summed(whole - more), self._summed(more)
+
+    def _rubbing(self, rows: Sequence[Array], speed: SpeedProfile) -> Acting:
+        """Friction of every node, and the mean torque that it takes."""
+        frame, start = speed.level, float(speed.at(0.0))
+        drags, taken_up = [], []
+        for node, row, dry, damping in zip(self.nodes, rows, *self.friction(), strict=True):
+            ratio = float(row.sum())
+            drags.append(Drag(f"friction_{node}", row, dry, damping, float(taken(dry, damping, ratio * start))))
+            taken_up.append((row, Level(frame.time, -taken(dry, damping, ratio * frame.value))))
+        return Acting(taken_up=tuple(taken_up), drags=tuple(drags))
 
     def _summed(self, torque: Array) -> Array:
+        """What the throws have (throws, …) as what the nodes have."""
         return torque if len(self.nodes) > 1 else torque.sum(axis=0, keepdims=True)
 
     def _gas(self, rows: Sequence[Array]) -> tuple[Source, ...]:

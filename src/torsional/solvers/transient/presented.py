@@ -44,7 +44,7 @@ def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: 
         method_share=method_share(told),
         end_time=told.end.time,
         end_reference=float("nan") if told.end.reference is None else told.end.reference,
-        system_hash=system.hash,
+        system_hash=problem.line_hash,
         **settings,
     )
 

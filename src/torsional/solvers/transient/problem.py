@@ -16,6 +16,7 @@ from torsional.numerics.stepping_data import Equations, rows_of
 from torsional.numerics.stepping_plan import Plan, prepare
 from torsional.solvers.transient.acting import Acting, Drive, assembled, row_of
 from torsional.solvers.transient.arrays import connected, masses, with_pendulums
+from torsional.solvers.transient.drags import dragged
 from torsional.solvers.transient.drives import all_acting, held
 from torsional.solvers.transient.profiles import Level, level_of
 from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
@@ -30,7 +31,10 @@ COUNTS = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A ``system`` under what acts on it, its frame turning at ``speed``; ``levels`` by name over time."""
+    """A ``system`` under what acts on it, its frame turning at ``speed``; ``levels`` by name over time.
+
+    The friction that drives bring along stands behind the connections of the ``line`` itself.
+    """
 
     system: System
     acting: Acting
@@ -39,6 +43,7 @@ class Problem:
     levels: Mapping[str, Level] | None = None
     reference: str = ""
     reference_time: float = np.inf
+    line: System | None = None
 
     @classmethod
     def of(
@@ -62,7 +67,12 @@ class Problem:
             hold = ""
         acting = held(all_acting(drives, system, profile), system, hold)
         given = {name: level_of(*knots, f"levels.{name}") for name, knots in (levels or {}).items()}
-        return cls(system, acting, profile, hold, given, reference, reference_time)
+        return cls(dragged(system, acting.drags), acting, profile, hold, given, reference, reference_time, system)
+
+    @property
+    def line_hash(self) -> str:
+        """What tells the line from every other, whatever drives it."""
+        return (self.line or self.system).hash
 
     @cached_property
     def start_speed(self) -> float:

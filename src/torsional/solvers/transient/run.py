@@ -96,7 +96,7 @@ def transient(
     given = {"hold": hold, "levels": levels, "reference": reference, "reference_time": reference_time}
     problem = Problem.of(system, drives, speed, **given)  # type: ignore[arg-type]
     kept(keep, system.nodes, system.connections.names)
-    state = starting(start, system, problem.acting, problem.hold, problem.start_speed)
+    state = starting(start, problem.system, problem.acting, problem.hold, problem.start_speed)
     notes = {"switched": words} if (words := _switching(problem)) else {}
     step = _fitting(step, time)
     run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)

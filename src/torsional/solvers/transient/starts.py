@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -70,10 +70,24 @@ class State:
 
 def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
     """The state that ``start`` means; raises ModelError for what means none."""
+    count = len(system.connections.names)
     if isinstance(start, State):
-        return start
+        state = start
+    elif isinstance(start, xr.Dataset) and "end_angle" in start:
+        state = State.ending(start, system)
+    else:
+        state = _found(start, system, acting, hold, speed)
+        state = replace(state, memory=state.memory[: count - len(acting.drags)])
+    if len(state.memory) == count:
+        return state
+    more = [drag.memory(state.speed, speed) for drag in acting.drags]
+    return replace(state, memory=np.append(state.memory, more)[:count], standing=None)
+
+
+def _found(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
+    """The state that a word or a motion means."""
     if isinstance(start, xr.Dataset):
-        return State.ending(start, system) if "end_angle" in start else periodic_state(start, system, acting, hold)
+        return periodic_state(start, system, acting, hold)
     if start is None or start == "equilibrium":
         return equilibrated(system, acting, hold, speed)
     if start == "vibrating":
@@ -148,12 +162,12 @@ def crank_profile(crank: Crank) -> Profile:
 
 def tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray, Array]:
     """Slopes of all connections at rest at the coordinates ``angle``: stiffness [Nm/rad], its hysteretic part the
-    imaginary one and the centrifugal part in it, and damping [Nms/rad]."""
+    imaginary one and the centrifugal part in it, and damping [Nms/rad]; laws of the whole speed slide and have none."""
     c = system.connections
     twist = c.weights @ angle
     k, d = c.stiffness * (1 + 1j * c.loss_factor) + speed**2 * c.centrifugal_stiffness, c.damping.copy()
     for i, law in enumerate(c.laws):
-        if law is not None:
+        if law is not None and not c.whole_speed[i]:
             told = law.evaluate(twist[i])
             k[i], d[i] = k[i] + float(told[1]), d[i] + float(told[2])
     return np.asarray(k), d
@@ -164,6 +178,8 @@ def mean_load(acting: Acting, coordinates: int) -> Array:
     load = np.zeros(coordinates)
     for source in acting.sources:
         load += source.row * _mean(source)
+    for drag in acting.drags:
+        load -= drag.row * drag.mean
     return load
 
 

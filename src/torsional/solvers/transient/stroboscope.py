@@ -169,6 +169,6 @@ def _stiffness(system: System, angle: Array, speed: float) -> Array:
     mean of its slopes further out."""
     found = tangents(system, angle, speed)[0].real
     for i, law in enumerate(system.connections.laws):
-        if law is not None and not found[i] > 0:
+        if law is not None and not found[i] > 0 and not system.connections.whole_speed[i]:
             found[i] = float(np.mean(law.tangent(FURTHER)))
     return np.maximum(found, 0.0)
