@@ -152,12 +152,8 @@ def _presented(scope: Stroboscope, told: Marched, orders: Array, character: Char
         step=scope.settled.step,
         end_time=0.0,
         end_reference=float("nan") if end.reference is None else end.reference,
-<<<<<<< HEAD
-        system_hash=system.hash,
-        **scope.notes,
-=======
         system_hash=problem.line_hash,
->>>>>>> 62c4578 (Engine friction acts against the crank's own speed in time: it turns round with it and holds it at standstill)
+        **scope.notes,
     ).assign_coords(speed=problem.start_speed)
 
 
