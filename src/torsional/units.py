@@ -52,7 +52,9 @@ def _article(noun: str) -> str:
 
 
 def _allowed(kind: str) -> str:
-    return ", ".join(pretty(unit) for unit in list(CANONICAL[kind])[:8])
+    """The units of a kind, one spelling of each, and never more than twelve."""
+    one = {factor: unit for unit, factor in reversed(CANONICAL[kind].items())}
+    return ", ".join([pretty(unit) for unit, factor in CANONICAL[kind].items() if one[factor] == unit][:12])
 
 
 def _factor(unit: str, kind: str, where: str, found: object) -> float:

@@ -296,8 +296,17 @@ def test_torque_above_full_load_is_told(torsional: Run, truck: str) -> None:
     assert torsional("modes", truck, "--torque", "2500 Nm").err == ""
 
 
-def test_a_unit_that_is_written_was_not_forgotten(torsional: Run, truck: str) -> None:
-    assert "warning" not in torsional("respond", truck, "--torque", "500Nm", "--speed", "600:9000rpm").err
+def test_torque_above_full_load_at_its_speed_is_told(torsional: Run, truck: str) -> None:
+    told = torsional("modes", truck, "--torque", "2000", "--speed", "600")
+    assert told.err.startswith("warning: --torque: 2000 Nm is above full load, which is ")
+    assert told.err.endswith(" at 600 rpm\n")
+    assert torsional("modes", truck, "--torque", "2000", "--speed", "1200").err == ""
+
+
+def test_speeds_outside_the_engines_range_are_told(torsional: Run, truck: str) -> None:
+    told = torsional("respond", truck, "--torque", "500Nm", "--speed", "600:9000:600rpm").err
+    assert told == "warning: --speed: 2400 rpm and 9000 rpm is outside the engine's range, 600 rpm to 2000 rpm\n"
+    assert "94 rpm is outside" in torsional("modes", truck, "--speed", "94").err
 
 
 def test_the_first_modes_are_those_of_a_turning_pendulum(torsional: Run, truck: str) -> None:

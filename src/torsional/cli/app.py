@@ -9,7 +9,6 @@ import typer
 
 from torsional import __version__
 from torsional.cli import options as o
-from torsional.cli import slow_sweep
 from torsional.cli.jobs import Job, analysis, job
 
 HELP = ["--help", "-h"]
@@ -50,7 +49,7 @@ def check(
     gear: o.Gear = "",
     torque: o.Torque = "",
     changes: o.Changes = None,
-    expand: Annotated[bool, typer.Option("--expand", help="Print the model written as components alone.")] = False,
+    expand: o.Expand = False,
     as_json: o.Json = False,
     output: o.Output = None,
     quiet: o.Quiet = False,
@@ -69,12 +68,7 @@ def modes(
     gear: o.Gears = "",
     torque: o.Torque = "",
     speed: o.Speed = "",
-    order: Annotated[
-        float | None,
-        typer.Option(
-            "--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest.", show_default=False
-        ),
-    ] = None,
+    order: o.OneOrder = None,
     changes: o.Changes = None,
     as_json: o.Json = False,
     output: o.Output = None,
@@ -119,7 +113,7 @@ def map_(
     orders: o.Orders = "",
     node: o.Nodes = None,
     element: o.Elements = None,
-    worst: Annotated[int, typer.Option("--worst", min=1, metavar="N", help="Cells to list for each place.")] = 3,
+    worst: o.Worst = 3,
     changes: o.Changes = None,
     as_json: o.Json = False,
     output: o.Output = None,
@@ -157,9 +151,7 @@ def periodic(
     speed: o.SpeedOrRange = "",
     parameter: o.Parameter = "",
     at: o.At = "",
-    isolated: Annotated[
-        bool, typer.Option("--isolated", help="Seek as well motions that hang together with no other; takes longer.")
-    ] = False,
+    isolated: o.Isolated = False,
     order: o.Order = None,
     node: o.Nodes = None,
     element: o.Elements = None,
@@ -181,16 +173,7 @@ def subharmonic(
     gear: o.Gear = "",
     torque: o.Torques = "",
     speed: o.Speeds = "",
-    points: Annotated[
-        int | None,
-        typer.Option(
-            "--points",
-            min=2,
-            metavar="N",
-            help="Speeds, and mean torques, of ranges without a step; default: 71 and 26.",
-            show_default=False,
-        ),
-    ] = None,
+    points: o.Points = None,
     node: o.OneNode = "",
     element: o.OneElement = "",
     changes: o.Changes = None,
@@ -245,23 +228,36 @@ def scenario(
     return analysis("scenario", locals())
 
 
-app.command()(slow_sweep.hysteresis)
+@app.command()
+def hysteresis(
+    model: o.ModelFile,
+    gear: o.Gear = "",
+    speed: o.SpeedList = "",
+    sweep: o.Sweep = "",
+    rate: o.Rate = "",
+    about: o.About = "",
+    turned: o.Turned = "",
+    held: o.Held = "",
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Hysteresis loops of the absorber under a slow sweep.
+
+    Torque over angle at any rotational speed: stiffness, loss per cycle, loss factor, which elements slide and which
+    stick.
+    """
+    return analysis("hysteresis", locals())
 
 
 @app.command()
 def report(
     model: o.ModelFile,
-    compare: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated.", show_default=False
-        ),
-    ] = None,
+    compare: o.Compare = None,
     changes: o.Changes = None,
     as_json: o.Json = False,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="The page to write, ending in .html.")
-    ] = Path("report.html"),
+    output: o.Page = Path("report.html"),
     quiet: o.Quiet = False,
 ) -> Job:
     """One HTML page about one model or several."""
@@ -276,11 +272,9 @@ def schema(output: o.Output = None) -> Job:
 
 @app.command()
 def new(
-    kind: Annotated[str, typer.Argument(metavar="[KIND]", help="truck or line.")] = "truck",
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="The model file to write.", show_default=False)
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")] = False,
+    kind: o.Kind = "truck",
+    output: o.NewFile = None,
+    force: o.Force = False,
 ) -> Job:
     """A commented model file to begin with."""
     return job("starting", what="new", kind=kind, output=[output] if output else None, force=force)

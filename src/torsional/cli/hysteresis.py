@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional import units
-from torsional.cli import inputs
+from torsional.cli import inputs, typed
 from torsional.cli.answers import Answer, deliver, told_settings
 from torsional.cli.documents import amount
 from torsional.cli.failures import complain
@@ -38,8 +38,8 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
     machine = request.model
     engaged = inputs.one_gear(machine, gear)
     speeds = listed(speed or SPEEDS, "speed", "--speed")
-    pace = _positive(units.read(rate, "angular_velocity", where="--rate") if rate else RATE, "--rate", rate)
-    centre = units.read(about, "relative_angle", where="--about") if about else 0.0
+    pace = _positive(typed.read(rate, "angular_velocity", "--rate") if rate else RATE, "--rate", rate)
+    centre = typed.read(about, "relative_angle", "--about") if about else 0.0
     ends = chosen_ends(machine, turned, held)
     system = assemble(machine.detailed().powertrain(engaged or None))
     own = f"{within_stops(system, ends, machine.landmarks.springs)} rad"
@@ -67,13 +67,13 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
 def listed(text: str, quantity: str, option: str) -> Array:
     """Values separated by commas, the last one's unit good for all that have none; or a range with its step."""
     if ":" in text:
-        start, stop, *step = units.read_range(text, quantity, where=option)
+        start, stop, *step = typed.read_range(text, quantity, option)
         if not step:
             remedy = "name a step as 0:4000:1000rpm, or the values as 0,2000,4000rpm"
             raise ModelError("how many values are meant?", where=option, found=units.quoted(text), remedy=remedy)
         values = np.arange(start, stop + 1e-9 * step[0], step[0])
     else:
-        parts = [part.strip() for part in text.split(",")]
+        parts = [part.strip() for part in typed.with_unit(text, quantity).split(",")]
         unit = parts[-1].lstrip("0123456789.+-eE −–")
         values = np.array(
             [units.read(p if p[-1:].isalpha() or p[-1:] == "°" else p + unit, quantity, option) for p in parts]

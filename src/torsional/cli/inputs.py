@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from torsional import units
+from torsional.cli import typed
 from torsional.cli.failures import complain
 from torsional.errors import ModelError, nearest
+from torsional.units import QUANTITIES
 
 if TYPE_CHECKING:
     from torsional.model import Model
@@ -41,23 +43,26 @@ def gears(model: Model, text: str) -> list[str]:
     return list(dict.fromkeys(named))
 
 
-def torque(model: Model, text: str) -> float:
-    """One mean engine torque [Nm]; by default the highest of the full-load curve."""
+def torque(model: Model, text: str, over: Sequence[float] | Array = ()) -> float:
+    """One mean engine torque [Nm]; by default the highest of the full-load curve.
+
+    What lies above full load at all speeds ``over`` which it is asked for [rad/s] (none: at any speed) is told.
+    """
     from torsional.solvers.campbell import typical_torque
 
     if not text:
         return typical_torque(model)
     value = _value(text, "torque", "--torque")
-    if model.engine and model.engine.full_load and value > (1 + 1e-9) * model.full_load_peak():
-        asked, most = (units.show(each, "torque") for each in (value, model.full_load_peak()))
-        complain(f"--torque: {asked} is above full load, which is {most} at most", kind="warning")
+    warn_overload(model, value, over)
     return value
 
 
 def speed(model: Model, text: str) -> float:
     """One mean engine speed [rad/s]; by default where full load is highest, else the middle of the operating range."""
     if text:
-        return _value(text, "speed", "--speed")
+        value = _value(text, "speed", "--speed")
+        warn_off_range(model, [value])
+        return value
     curve = model.engine.full_load if model.engine else None
     if curve is None:
         return float(np.mean(model.operation.speed))
@@ -66,12 +71,49 @@ def speed(model: Model, text: str) -> float:
 
 def speeds(model: Model, text: str, count: int) -> Array:
     """Mean engine speeds [rad/s], ``count`` of them where no step is given; by default over the operating range."""
-    return _values(text, "speed", "--speed", count) if text else model.speeds(count)
+    if not text:
+        return model.speeds(count)
+    found = _values(text, "speed", "--speed", count)
+    warn_off_range(model, found)
+    return found
 
 
 def torques(model: Model, text: str, count: int) -> Array:
     """Mean engine torques [Nm] of a map."""
-    return _values(text, "torque", "--torque", count) if text else model.torques(count)
+    if not text:
+        return model.torques(count)
+    found = _values(text, "torque", "--torque", count)
+    warn_overload(model, float(found.max()))
+    return found
+
+
+def warn_off_range(model: Model, speeds: Sequence[float] | Array) -> None:
+    """Say that an engine does not run at some of these speeds [rad/s]: neither its curve nor its file knows them."""
+    if "operation" not in model.document and (model.engine is None or model.engine.full_load is None):
+        return
+    known = [*model.operation.speed]
+    known += [] if model.engine is None or model.engine.full_load is None else [*model.engine.full_load.speeds]
+    low, high = min(known), max(known)
+    beyond = [speed for speed in speeds if not (1 - 1e-9) * low <= speed <= (1 + 1e-9) * high]
+    if beyond:
+        asked = " and ".join(dict.fromkeys(units.show(end, "speed") for end in (min(beyond), max(beyond))))
+        span = " to ".join(units.show(end, "speed") for end in (low, high))
+        complain(f"--speed: {asked} is outside the engine's range, {span}", kind="warning")
+
+
+def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = ()) -> None:
+    """Say that a mean torque [Nm] lies above full load at each of the speeds [rad/s], or at any where none is named."""
+    curve = model.engine.full_load if model.engine else None
+    if curve is None:
+        return
+    speeds, torques = np.asarray(curve.speeds), np.asarray(curve.torques)
+    low, high = (min(over), max(over)) if len(over) else (speeds[0], speeds[-1])
+    inside = torques[(low <= speeds) & (speeds <= high)]
+    most = float(np.max([*np.interp([low, high], speeds, torques), *inside]))
+    if torque > (1 + 1e-9) * most:
+        told = f"is above full load, which is {units.show(most, 'torque')}"
+        at = f" at {units.show(over[0], 'speed')}" if len(over) == 1 else " at most"
+        complain(f"--torque: {units.show(torque, 'torque')} {told}{at}", kind="warning")
 
 
 def orders(single: Sequence[float] | None, text: str) -> Array | None:
@@ -102,7 +144,7 @@ def affordable(points: int, width: int) -> None:
 
 
 def _value(text: str | float, quantity: str, option: str) -> float:
-    value = units.read(text, quantity, where=option)
+    value = typed.read(str(text), quantity, option)
     _refuse_backward(value, quantity, option)
     _doubt([value], quantity, option, text)
     return value
@@ -112,7 +154,7 @@ def _values(text: str, quantity: str, option: str, count: int) -> Array:
     """One value, or those of a range: with its step, else ``count`` evenly spaced (orders: half ones)."""
     if ":" not in text:
         return np.array([_value(text, quantity, option)])
-    start, stop, *step = units.read_range(text, quantity, where=option)
+    start, stop, *step = typed.read_range(text, quantity, option)
     _refuse_backward(start, quantity, option)
     _doubt([start, stop], quantity, option, text)
     if not step and count:
@@ -128,7 +170,7 @@ def _refuse_backward(value: float, quantity: str, option: str) -> None:
 
 def _doubt(values: Sequence[float], quantity: str, option: str, text: str | float) -> None:
     """Say on stderr what looks like a forgotten unit; nothing where one is written."""
-    if str(text).rstrip()[-1:].isalpha():
+    if str(text).rstrip()[-1:].isalpha() or typed.unit_of(quantity) != QUANTITIES[quantity].unit:
         return
     for warning in dict.fromkeys(told for value in values for told in units.plausible(value, quantity)):
         complain(f"{option}: {warning}", kind="warning")

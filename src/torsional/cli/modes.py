@@ -37,7 +37,8 @@ def run(
     """Answer the command."""
     machine = request.model
     names = inputs.gears(machine, gear)
-    mean, at = inputs.torque(machine, torque), inputs.speed(machine, speed)
+    at = inputs.speed(machine, speed)
+    mean = inputs.torque(machine, torque, [at] if speed else [])
     asked = inputs.orders(None if order is None else [order], "")
     main = float(asked[0]) if asked is not None else next(iter(engine_orders(machine)), None)
     found = [modes_of(machine, name, mean, at, main) for name in names]

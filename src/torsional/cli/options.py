@@ -1,106 +1,109 @@
-"""The arguments and options that commands share, each told once."""
+"""The arguments and options of all commands, each told once."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+
+def _taking(*names: str, metavar: str, help: str) -> Any:
+    """An option that takes a value."""
+    return typer.Option(*names, metavar=metavar, help=help, show_default=False)
+
+
 ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", help="Model file (.yaml or .json).", show_default=False)]
-Gear = Annotated[
-    str,
-    typer.Option("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.", show_default=False),
-]
+Gear = Annotated[str, _taking("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.")]
 Gears = Annotated[
     str,
-    typer.Option(
-        "--gear",
-        "-g",
-        metavar="NAMES",
-        help="Gear, several as 10,11,12, or 'all'; default: the last one.",
-        show_default=False,
-    ),
+    _taking("--gear", "-g", metavar="NAMES", help="Gear, several as 10,11,12, or 'all'; default: the last one."),
 ]
-Torque = Annotated[
-    str,
-    typer.Option(
-        "--torque",
-        "-t",
-        metavar="TORQUE",
-        help="Mean engine torque, as '1200 Nm'; default: full load.",
-        show_default=False,
-    ),
-]
+
+_TORQUE = "Mean engine torque in Nm, or with its unit as 1.2kNm"
+_SPEED = "Mean engine speed in rpm, or with its unit as 94rad/s"
+Torque = Annotated[str, _taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; default: full load.")]
 Torques = Annotated[
     str,
-    typer.Option(
-        "--torque",
-        "-t",
-        metavar="RANGE",
-        help="Mean torques, as '0:2500:100 Nm'; default: up to full load.",
-        show_default=False,
-    ),
-]
-Speed = Annotated[
-    str,
-    typer.Option(
-        "--speed",
-        "-s",
-        metavar="SPEED",
-        help="Mean engine speed, as '900 rpm'; default: where full load is highest.",
-        show_default=False,
-    ),
-]
-Speeds = Annotated[
-    str,
-    typer.Option(
-        "--speed",
-        "-s",
-        metavar="RANGE",
-        help="Mean engine speeds, as 600:2000rpm or 600:2000:20rpm; default: the file's operating range.",
-        show_default=False,
+    _taking(
+        "--torque", "-t", metavar="RANGE", help="Mean engine torques in Nm, as 0:2500:100; default: up to full load."
     ),
 ]
 TorqueOrRange = Annotated[
     str,
-    typer.Option(
-        "--torque",
-        "-t",
-        metavar="TORQUE",
-        help="Mean engine torque, as '1200 Nm', or a range to follow at one speed; default: full load.",
-        show_default=False,
+    _taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; or a range, as 900:1500; default: full load."),
+]
+Speed = Annotated[
+    str, _taking("--speed", "-s", metavar="SPEED", help=f"{_SPEED}; default: where full load is highest.")
+]
+Speeds = Annotated[
+    str,
+    _taking(
+        "--speed",
+        "-s",
+        metavar="RANGE",
+        help="Mean engine speeds in rpm, as 600:2000 or 600:2000:20; default: the file's operating range.",
     ),
 ]
 SpeedOrRange = Annotated[
     str,
-    typer.Option(
+    _taking(
         "--speed",
         "-s",
         metavar="RANGE",
-        help="Mean engine speeds to follow, as 600:1200rpm, or one where something else is followed; default: the "
+        help="Mean engine speeds in rpm to follow, as 600:1200, or one where something else is followed; default: the "
         "file's operating range.",
-        show_default=False,
     ),
 ]
 SpeedInTime = Annotated[
     str,
-    typer.Option(
+    _taking(
         "--speed",
         "-s",
         metavar="SPEED",
-        help="Mean engine speed, as '900 rpm', or a run-up, as 600:1200rpm; default: where full load is highest.",
-        show_default=False,
+        help=f"{_SPEED}; or a run-up, as 600:1200; default: where full load is highest.",
     ),
 ]
-Duration = Annotated[
+SpeedList = Annotated[
     str,
-    typer.Option("--duration", "-d", metavar="TIME", help="How long it runs, as 3s; default: 2 s.", show_default=False),
+    _taking(
+        "--speed",
+        "-s",
+        metavar="SPEEDS",
+        help="Rotational speeds in rpm, as 0,2000,4000 or 0:4000:500; default: 0,2000,4000.",
+    ),
+]
+
+Duration = Annotated[
+    str, _taking("--duration", "-d", metavar="TIME", help="How long it runs in s, or with its unit; default: 2.")
 ]
 Step = Annotated[
-    str,
-    typer.Option("--step", metavar="TIME", help="Step of time, as 0.05ms; default: 0.1 ms.", show_default=False),
+    str, _taking("--step", metavar="TIME", help="Step of time in s, or with its unit as 0.05ms; default: 0.1ms.")
 ]
+
+Sweep = Annotated[
+    str,
+    _taking(
+        "--sweep",
+        metavar="ANGLES",
+        help="How far it is turned to either side in degrees, as 60 or 5,20,60; default: up to the stop, or 60.",
+    ),
+]
+Rate = Annotated[str, _taking("--rate", metavar="PACE", help="How fast in deg/s, or with its unit; default: 3.")]
+About = Annotated[
+    str, _taking("--about", metavar="ANGLE", help="The angle in the middle of the sweep in degrees; default: 0.")
+]
+Turned = Annotated[
+    str,
+    _taking("--turned", metavar="NODE", help="The node that is turned; default: the flywheel on the crankshaft."),
+]
+Held = Annotated[
+    str,
+    _taking(
+        "--held", metavar="NODE", help="The node it is turned against; default: the flywheel that carries the clutch."
+    ),
+]
+
 ScenarioName = Annotated[
     str,
     typer.Argument(
@@ -110,88 +113,87 @@ ScenarioName = Annotated[
         show_default=False,
     ),
 ]
+_AS_FILES = "units as in the file, none being SI; may be repeated"
 Settings = Annotated[
     list[str] | None,
-    typer.Option(
+    _taking(
         "--setting",
         "-s",
         metavar="PATH=VALUE",
-        help="Change the scenario, as starter.speed=150rpm; may be repeated.",
-        show_default=False,
-    ),
-]
-Parameter = Annotated[
-    str,
-    typer.Option(
-        "--parameter",
-        "-p",
-        metavar="PATH=RANGE",
-        help="A value of the file to follow at one speed and torque, as absorber.stages.1.stiffness=20:60kNm/rad.",
-        show_default=False,
-    ),
-]
-At = Annotated[
-    str,
-    typer.Option(
-        "--at",
-        metavar="VALUE",
-        help="Where to look at the motions themselves, as 940rpm: orders, stages, waveforms.",
-        show_default=False,
-    ),
-]
-Order = Annotated[
-    list[float] | None,
-    typer.Option("--order", "-n", metavar="N", help="An engine order; may be repeated.", show_default=False),
-]
-Orders = Annotated[
-    str, typer.Option("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.", show_default=False)
-]
-Nodes = Annotated[
-    list[str] | None,
-    typer.Option("--node", metavar="NAME", help="A node to look at, or 'all'; may be repeated.", show_default=False),
-]
-Elements = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.", show_default=False
-    ),
-]
-OneNode = Annotated[
-    str,
-    typer.Option(
-        "--node",
-        metavar="NAME",
-        help="The node whose acceleration is told; default: the one to be kept quiet.",
-        show_default=False,
-    ),
-]
-OneElement = Annotated[
-    str,
-    typer.Option(
-        "--element",
-        metavar="NAME",
-        help="The connection whose torque is told; default: the first with stages.",
-        show_default=False,
+        help=f"Change the scenario, as starter.speed=150rpm: {_AS_FILES}.",
     ),
 ]
 Changes = Annotated[
     list[str] | None,
+    _taking("--set", metavar="PATH=VALUE", help=f"Change the model, as absorber.damping=30: {_AS_FILES}."),
+]
+
+Parameter = Annotated[
+    str,
+    _taking(
+        "--parameter",
+        "-p",
+        metavar="PATH=RANGE",
+        help="A value of the file to follow at one speed and torque, as absorber.stages.1.stiffness=20:60kNm/rad: "
+        "units as in the file, none being SI.",
+    ),
+]
+At = Annotated[
+    str,
+    _taking(
+        "--at",
+        metavar="VALUE",
+        help="Where to look at the motions themselves: orders, stages, waveforms; a value of what is followed, as 940.",
+    ),
+]
+Isolated = Annotated[
+    bool, typer.Option("--isolated", help="Seek as well motions that hang together with no other; takes longer.")
+]
+Points = Annotated[
+    int | None,
     typer.Option(
-        "--set",
-        metavar="PATH=VALUE",
-        help="Change the model, as absorber.damping=30; may be repeated.",
+        "--points",
+        min=2,
+        metavar="N",
+        help="Speeds, and mean torques, of ranges without a step; default: 71 and 26.",
         show_default=False,
     ),
 ]
+
+Order = Annotated[list[float] | None, _taking("--order", "-n", metavar="N", help="An engine order; may be repeated.")]
+Orders = Annotated[str, _taking("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.")]
+OneOrder = Annotated[
+    float | None,
+    _taking("--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest."),
+]
+Nodes = Annotated[
+    list[str] | None, _taking("--node", metavar="NAME", help="A node to look at, or 'all'; may be repeated.")
+]
+Elements = Annotated[
+    list[str] | None, _taking("--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.")
+]
+OneNode = Annotated[
+    str,
+    _taking("--node", metavar="NAME", help="The node whose acceleration is told; default: the one to be kept quiet."),
+]
+OneElement = Annotated[
+    str,
+    _taking("--element", metavar="NAME", help="The connection whose torque is told; default: the first with stages."),
+]
+Worst = Annotated[int, typer.Option("--worst", min=1, metavar="N", help="Cells to list for each place.")]
+Expand = Annotated[bool, typer.Option("--expand", help="Print the model written as components alone.")]
+
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Output = Annotated[
     list[Path] | None,
-    typer.Option(
-        "--output",
-        "-o",
-        metavar="FILE",
-        help="Write a file; its ending says the kind. May be repeated.",
-        show_default=False,
-    ),
+    _taking("--output", "-o", metavar="FILE", help="Write a file; its ending says the kind. May be repeated."),
+]
+Page = Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The page to write, ending in .html.")]
+NewFile = Annotated[Path | None, _taking("--output", "-o", metavar="FILE", help="The model file to write.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")]
+Kind = Annotated[str, typer.Argument(metavar="[KIND]", help="truck or line.")]
+Compare = Annotated[
+    list[Path] | None,
+    _taking("--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated."),
 ]

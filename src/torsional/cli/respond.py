@@ -46,7 +46,7 @@ def run(
     """Answer the command."""
     machine = request.model
     engaged, speeds = inputs.one_gear(machine, gear), inputs.speeds(machine, speed, SPEEDS)
-    mean = np.full(len(speeds), inputs.torque(machine, torque)) if torque else full_load(machine, speeds)
+    mean = np.full(len(speeds), inputs.torque(machine, torque, speeds)) if torque else full_load(machine, speeds)
     asked = inputs.orders(order, orders)
     n = HALF_ORDERS if asked is None else asked
     places = chosen_places(machine, engaged, node, element)

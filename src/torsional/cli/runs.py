@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional import units
+from torsional.cli import typed
 from torsional.cli.answers import Answer, deliver
 from torsional.cli.failures import complain
 from torsional.cli.interrupts import Kept, taken
@@ -34,7 +35,7 @@ def seconds(text: str, option: str, default: float) -> float:
     """A positive time [s]."""
     if not text:
         return default
-    found = units.read(text, "time", where=option)
+    found = typed.read(text, "time", option)
     if not found > 0:
         raise ModelError("must be positive", where=option, found=units.quoted(text), allowed="> 0 s")
     return found

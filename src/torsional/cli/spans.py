@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from torsional import units
-from torsional.cli import inputs
+from torsional.cli import inputs, typed
 from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.files.schema.document import json_schema
@@ -34,6 +34,11 @@ class Span:
     torque: float | None = None
 
     @property
+    def in_file(self) -> bool:
+        """Whether it is a value of the model file, in which a plain number is in SI units."""
+        return self.name not in ("speed", "mean_torque")
+
+    @property
     def told(self) -> str:
         """What stays the same, as part of a title."""
         fixed = [] if self.speed is None else [units.show(self.speed, "speed")]
@@ -45,7 +50,8 @@ class Span:
         """A value within the span, as ``--at`` names it; None for an empty text."""
         if not text:
             return None
-        at = units.read(text, self.quantity, where="--at")
+        read = units.read if self.in_file else typed.read
+        at = read(text, self.quantity, "--at")
         if not self.low <= at <= self.high:
             allowed = f"{units.show(self.low, self.quantity)} to {units.show(self.high, self.quantity)}"
             found = units.show(at, self.quantity)
@@ -60,12 +66,14 @@ def asked(model: Model, speed: str, torque: str, parameter: str) -> Span:
     if ":" in torque:
         low, high = _pair(torque, "torque", "--torque")
         at = inputs.speed(model, _single(speed, "--speed"))
+        inputs.warn_overload(model, high, [at])
         return Span("mean_torque", "torque", low, high, speed=at)
     if speed and ":" not in speed:
         remedy = "write a range as 500:1200rpm, or let --torque or --parameter have one"
         raise ModelError("nothing varies here", where="--speed", found=units.quoted(speed), remedy=remedy)
     low, high = _pair(speed, "speed", "--speed") if speed else model.operation.speed
-    return Span("speed", "speed", low, high, torque=inputs.torque(model, torque) if torque else None)
+    inputs.warn_off_range(model, [low, high])
+    return Span("speed", "speed", low, high, torque=inputs.torque(model, torque, [low, high]) if torque else None)
 
 
 def _over_parameter(model: Model, speed: str, torque: str, text: str) -> Span:
@@ -79,7 +87,8 @@ def _over_parameter(model: Model, speed: str, torque: str, text: str) -> Span:
     low, high = _pair(told, quantity, f"--parameter {path}")
     for value in (low, high):
         changed(model, {path: value})  # refuses what the file could not have
-    return Span(path, quantity, low, high, speed=inputs.speed(model, speed), torque=inputs.torque(model, torque))
+    at = inputs.speed(model, speed)
+    return Span(path, quantity, low, high, speed=at, torque=inputs.torque(model, torque, [at]))
 
 
 def _single(text: str, option: str) -> str:
@@ -91,7 +100,8 @@ def _single(text: str, option: str) -> str:
 
 def _pair(text: str, quantity: str, option: str) -> Range:
     """The ends of a range; steps are chosen by the solver, so none is taken."""
-    ends = units.read_range(text, quantity, where=option)
+    read = units.read_range if option.startswith("--parameter") else typed.read_range
+    ends = read(text, quantity, option)
     if len(ends) > 2:
         remedy = "leave the third number out"
         raise ModelError(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from torsional import units
-from torsional.cli import inputs
+from torsional.cli import inputs, typed
 from torsional.cli.answers import Answer, told_settings
 from torsional.cli.documents import amount
 from torsional.cli.modes import in_gear
@@ -39,8 +39,9 @@ def run(
 ) -> None:
     """Answer the command."""
     machine, time = request.model, seconds(duration, "--duration", DURATION)
-    engaged, mean = inputs.one_gear(machine, gear), inputs.torque(machine, torque)
+    engaged = inputs.one_gear(machine, gear)
     turning, told_speed = speed_over(machine, speed, time)
+    mean = inputs.torque(machine, torque, list(dict.fromkeys(turning.range)))
     nodes, elements = chosen_places(machine.detailed(), engaged, node, element)
     width = seconds(step, "--step", 0.0) or None
     with running("run in time", request.quiet or request.as_json) as moved:
@@ -71,12 +72,13 @@ def speed_over(model: Model, text: str, duration: float) -> tuple[SpeedProfile, 
         _turning(at)
         return SpeedProfile.constant(at), units.show(at, "speed")
     ends = _ends(text)
+    inputs.warn_off_range(model, ends)
     return SpeedProfile.ramp(*ends, duration), " to ".join(units.show(end, "speed") for end in ends)
 
 
 def _ends(text: str) -> tuple[float, float]:
     """The ends of a run-up, or of a run-down."""
-    first, _, last = text.partition(":")
+    first, _, last = typed.with_unit(text, "speed").partition(":")
     if not (first.strip() and last.strip()) or ":" in last:
         remedy = "name where it begins and where it ends, as 600:1200rpm"
         raise ModelError("how does the speed run?", where="--speed", found=units.quoted(text), remedy=remedy)
