@@ -226,7 +226,9 @@ def _refuse_strange(name: str, given: Mapping[str, Any]) -> None:
         if quantity.name == "speed" and least < 0:
             raise ModelError("an engine does not turn backwards", where=where, found=f"{least:g} rad/s")
         limit = FAR_ABOVE * (_highest_speed(given["model"]) if quantity.name == "speed" else quantity.high)
-        if most * convert(1.0, quantity.shown, quantity.unit) <= limit < most:
+        shown = convert(1.0, quantity.shown, quantity.unit)
+        ordinary = shown * least > _lowest_speed(given["model"]) / FAR_ABOVE or quantity.name != "speed"
+        if ordinary and shown * most <= limit < most:
             meant = f"{most:g} {quantity.shown}"
             remedy = f"if {quantity.shown} was meant, write torsional.units.read('{meant}', '{quantity.name}')"
             told = f"this is far above {limit:.4g} {quantity.unit}, beyond which no such model goes"
@@ -240,3 +242,8 @@ def _highest_speed(model: Any) -> float:
     if "operation" in getattr(model, "document", ()):
         told.append(float(model.operation.speed[1]))
     return max(told, default=np.inf)
+
+
+def _lowest_speed(model: Any) -> float:
+    """The lowest speed [rad/s] at which a model runs."""
+    return float(model.operation.speed[0])
