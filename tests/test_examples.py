@@ -27,6 +27,21 @@ EXPECTED: dict[str, dict[Any, float]] = {
     # in time, as above: the mean torque and the stiffness at which a multiplier just reaches −1
     "08_region_of_half_orders": {"highest torque": 1416.96, "softest": 18675.0},
     # harmonic balance of the two stable motions, 24 orders, from which steps of 5e-5 s are off by 0.01 %
+    # each asserts within itself, against a closed form or another solver; these guard against a change
+    "10_peak_over_stiffness": {"softest": 648.0, "stiffest": 728.0},
+    "11_second_damper_ring": {"best": 199.05, "twist": 6.27647},
+    "12_one_order_three_gears": {"12": 652.5},
+    # 0.1 arsinh 1.5
+    "13_own_law_in_the_truck": {"twist": 0.119476},
+    "14_own_absorber": {"quietest": 1200.0},
+    "15_into_a_spreadsheet": {"rows": 116, "rpm": 600.0},
+    # as 01 and 02
+    "16_all_files_of_a_folder": {"truck_smf": 654.1, "truck_dmf": 768.6},
+    # two discs by hand
+    "17_two_propellers": {"first": 2.915333, "second": 18.741321},
+    "18_beside_a_measurement": {"best": 27e3},
+    # 1500 Nm over 13 kNm/rad
+    "19_in_a_notebook": {"twist": 6.61108},
     "09_up_and_down_in_time": {"up": 0.024260, "down": 0.108034, "before": 0.024260, "after": 0.108034},
 }
 
