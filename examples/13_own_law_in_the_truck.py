@@ -40,7 +40,7 @@ def main() -> dict[str, float]:
     assert np.isclose(point.angle[at], 0.1 * np.arcsinh(1.5), rtol=1e-9)
     assert np.isclose(point.stiffness[at], 1e4 * np.sqrt(1 + 1.5**2), rtol=1e-9)
 
-    speed = np.array([600.0, 1200.0]) * tv.RPM  # small vibrations see the tangent; large ones: tv.model_response(truck, …)
+    speed = np.array([600.0, 1200.0]) * tv.RPM  # small swings see the tangent; large ones: tv.model_response
     torque = truck.engine.excitation(truck.landmarks.throws, speed, 1500.0, orders=[3.0])
     swing = abs(tv.harmonic_response(system, torque).torque.sel(element="dmf", order=3.0)).values / point.stiffness[at]
     print(f"order 3 swings it by {np.degrees(swing[0]):.2f}° at 600 rpm and {np.degrees(swing[1]):.2f}° at 1200 rpm")
