@@ -18,6 +18,8 @@ from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 
 _ROUNDING = 1e-13
+SUSPENSION = ".suspension"
+"""What the way of a pendulum along its path is named by, behind the pendulum's name."""
 _ENERGIES = {
     "dampers": "lost in dampers",
     "friction": "lost in friction",
@@ -67,18 +69,28 @@ def told_elements(run: xr.Dataset) -> list[str]:
 
 
 def _travel(run: xr.Dataset, springs: Sequence[str]) -> list[Table]:
-    """How far springs with stops went; nothing where none has any."""
+    """How far springs and pendulums with stops went; nothing where none has any."""
     columns = [Column("spring"), Column("from", "relative_angle"), Column("to", "relative_angle")]
     columns += [Column("stop", "relative_angle"), Column("way left", "relative_angle"), Column("contacts")]
     rows: list[Sequence[object]] = []
-    for spring in springs:
+    pendulums = [str(e) for e in run.element.values if str(e).endswith(SUSPENSION) and e not in springs]
+    for spring in [*springs, *pendulums]:
         one = run.sel(element=spring)
         low, high, below, above = (
             float(one[name]) for name in ("twist_lowest", "twist_highest", "stop_below", "stop_above")
         )
         if np.isfinite([below, above]).any():
             left = np.nanmin([above - high, low - below])
-            rows.append([spring, low, high, np.nanmin(np.abs([below, above])), max(left, 0.0), int(one.stop_contacts)])
+            rows.append(
+                [
+                    spring.removesuffix(SUSPENSION),
+                    low,
+                    high,
+                    np.nanmin(np.abs([below, above])),
+                    max(left, 0.0),
+                    int(one.stop_contacts),
+                ]
+            )
     return [Table("Springs against their stops", columns, rows)] if rows else []
 
 
