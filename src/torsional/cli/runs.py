@@ -99,8 +99,22 @@ def _energies(run: xr.Dataset) -> Table:
     known = [str(name) for name in run.share.values]
     nothing = _ROUNDING * float(np.abs(run.energy).max())
     shares = {told: float(run.energy.sel(share=name)[-1]) for name, told in _ENERGIES.items() if name in known}
-    rows = [[told, value if abs(value) > nothing else 0.0] for told, value in shares.items()]
+    rows: list[Sequence[object]] = []
+    for told, value in shares.items():
+        rows.append([told, value if abs(value) > nothing else 0.0])
+        rows += _rubbing(run, nothing) if told == _ENERGIES["friction"] else []
     return Table("Energy", columns, rows)
+
+
+def _rubbing(run: xr.Dataset, nothing: float) -> list[Sequence[object]]:
+    """What each friction part lost of it; those inside an absorber together."""
+    if "friction_loss" not in run:
+        return []
+    lost = {str(name): float(run.friction_loss.sel(rubbing=name)[-1]) for name in run.rubbing.values}
+    own = [[f"  of it in {name}", lost.pop(name)] for name in told_elements(run) if name in lost]
+    inner = sum(lost.values())
+    listed = own + ([["  of it inside the absorber", inner]] if lost else [])
+    return [[told, value if abs(value) > nothing else 0.0] for told, value in listed]  # type: ignore[operator,arg-type]
 
 
 def chosen(run: xr.Dataset, nodes: Sequence[str], elements: Sequence[str]) -> xr.Dataset:

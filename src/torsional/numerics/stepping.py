@@ -88,5 +88,5 @@ def _check(step: float, steps: int, places: IntArray) -> None:
 
 def _records(plan: Plan, count: int) -> Records:
     n, connections, laws = plan.tape.node.size, plan.pairs.left.size, plan.laws.of.size
-    widths = (n, n, n, connections, connections, laws, laws, len(Entry))
+    widths = (n, n, n, connections, connections, laws, laws, laws, len(Entry))
     return Records(np.full(count, np.nan), *(np.full((count, width), np.nan) for width in widths))

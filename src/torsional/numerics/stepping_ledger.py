@@ -154,7 +154,9 @@ def _rubbed(laws: Laws, bent: Bent, now: Connections, state: State, h: float, le
             beside += pressed
         ledger[Entry.WORKED] += beside
         ledger[Entry.THROUGHPUT] += abs(beside)
-        ledger[Entry.RUBBED] += mean * turned + beside - felt
+        lost = mean * turned + beside - felt
+        ledger[Entry.RUBBED] += lost
+        state.passed[3, e] += lost
         state.passed[1, e] += abs(mean * turned)
         state.law[0, l], state.law[1, l], state.law[2, l] = bent.torque[l], bent.memory[l], bent.load[l]
         state.law[3, l] += kept

@@ -189,5 +189,6 @@ def record(
         for l in range(law_of.size):
             records.torque[k, law_of[l]] += state.law[0, l]
             records.memory[k, l], records.load[k, l] = state.law[1, l], state.law[2, l]
+            records.lost[k, l] = state.passed[3, law_of[l]]
         k += 1
     return k

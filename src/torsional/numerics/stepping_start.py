@@ -46,7 +46,7 @@ def begin(
         connection=np.zeros((4, edges)),
         sense=np.full(plan.hinges.of.size, -1.0),
         law=np.zeros((5, laws)),
-        passed=np.zeros((3, edges)),
+        passed=np.zeros((4, edges)),
         integral=_fitting(0.0 if integral is None else integral, governors, "integral"),
         reference=np.zeros(3),
         ledger=np.zeros(len(Entry)),

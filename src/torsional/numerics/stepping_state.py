@@ -72,10 +72,10 @@ class State(NamedTuple):
     ``coordinates`` (4, n): q [rad], q̇, q̈, and the method's own a. ``external`` and ``inertial`` (n,): torques of
     all sources, and M q̈. ``connection`` (4, E): twist, rate, torque of spring, hinges and damper, and offset of the
     rate. ``sense`` (H,): 1 closed, −1 open. ``law`` (5, L): torque, memory, normal load, strain energy, and its
-    elastic tangent or, without a memory, its torque at rest. ``passed`` (3, E): energy that the method made at each
-    connection, all that went through it, and what contact times given by the guard took. ``integral`` (G,) of the
-    governors. ``reference`` (3,): Ω_r [rad/s], Ω², the frame's speed. ``ledger`` by `Entry`, ``counts`` by `Count`;
-    ``begin`` (1,) is the time of base step 0 [s].
+    elastic tangent or, without a memory, its torque at rest. ``passed`` (4, E): energy that the method made at each
+    connection, all that went through it, what contact times given by the guard took, and what its law lost.
+    ``integral`` (G,) of the governors. ``reference`` (3,): Ω_r [rad/s], Ω², the frame's speed. ``ledger`` by `Entry`,
+    ``counts`` by `Count`; ``begin`` (1,) is the time of base step 0 [s].
     """
 
     coordinates: Array
@@ -98,7 +98,7 @@ class State(NamedTuple):
 
 class Records(NamedTuple):
     """What was recorded (R records): ``time`` (R,), ``q``, ``v``, ``acceleration`` (R, n), ``twist`` [rad] and
-    ``torque`` [Nm] (R, E), ``memory`` and ``load`` (R, L) of the laws by address, ``ledger`` (R, entries)."""
+    ``torque`` [Nm] (R, E), ``memory``, ``load`` and ``lost`` [J] (R, L) of the laws by address, ``ledger`` (R, entries)."""
 
     time: Array
     q: Array
@@ -108,6 +108,7 @@ class Records(NamedTuple):
     torque: Array
     memory: Array
     load: Array
+    lost: Array
     ledger: Array
 
 

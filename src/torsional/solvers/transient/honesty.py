@@ -80,7 +80,7 @@ def _made_alone(told: Marched, names: tuple[str, ...]) -> str:
     """The connection at which the steps made most energy of their own, if that is much for what goes through it."""
     if told.end.standing is None:
         return ""
-    made, through, _ = told.end.standing.passed
+    made, through = told.end.standing.passed[:2]
     share = np.where(made > 0, made, 0.0) / np.where(through > 0, through, 1.0)
     worst = int(share.argmax()) if share.size else 0
     if not share.size or share[worst] <= ALONE:

@@ -73,7 +73,8 @@ class Accuracy:
 
 class Marched(NamedTuple):
     """What was recorded: ``time`` (S,) [s]; ``angle``, ``speed``, ``acceleration`` (S, N) of the coordinates;
-    ``torque``, ``memory``, ``load`` (S, E) of the connections; ``energy`` (S, shares) [J] since the start."""
+    ``torque``, ``memory``, ``load``, and ``lost`` [J] in their laws, (S, E) of the connections; ``energy`` (S, shares)
+    [J] since the start."""
 
     time: Array
     angle: Array
@@ -82,6 +83,7 @@ class Marched(NamedTuple):
     torque: Array
     memory: Array
     load: Array
+    lost: Array
     energy: Array
     end: State
     steps: int
@@ -97,8 +99,9 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
     plan, own = problem.plan, _standing(problem, state, accuracy.step)
     told = march(plan, accuracy.family, accuracy.step, steps, own, at=kept, settings=accuracy.settings)
     records, count = told.records, len(state.memory)
-    memory, load = np.zeros((2, len(kept), count))
-    memory[:, plan.laws.of], load[:, plan.laws.of] = records.memory, records.load
+    memory, load, lost = np.zeros((3, len(kept), count))
+    for whole, own_part in ((memory, records.memory), (load, records.load), (lost, records.lost)):
+        whole[:, plan.laws.of] = own_part
     end = State(
         time=float(records.time[-1]),
         angle=records.q[-1],
@@ -119,6 +122,7 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
         torque=records.torque,
         memory=memory,
         load=load,
+        lost=lost,
         energy=energy,
         end=end,
         steps=told.count(Count.STEPS) - int(own.counts[Count.STEPS]),
@@ -188,6 +192,7 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         torque=torque,
         memory=run.memories,
         load=load,
+        lost=np.full_like(load, np.nan),
         energy=np.full((len(times), len(LEDGER)), np.nan),
         end=end,
         steps=run.steps,

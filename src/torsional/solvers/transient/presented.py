@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError, nearest
+from torsional.laws import Law
 from torsional.numerics.arrays import Array, IntArray
 from torsional.results import Variable, dataset
 from torsional.solvers.transient.marching import LEDGER, Marched, method_share
@@ -65,7 +66,7 @@ def _motion(problem: Problem, told: Marched, frame: Array, nodes: IntArray, elem
 
 
 def _friction(problem: Problem, told: Marched, elements: IntArray) -> tuple[dict[str, Variable], Coordinates]:
-    """Memories and normal loads of the elements that have them."""
+    """Memories and normal loads of the elements that have them, and what each part that rubs has lost."""
     c = problem.system.connections
     names = np.array(c.names)
     remembering = np.array([i for i in elements if (law := c.laws[i]) is not None and law.remembers], dtype=np.int64)
@@ -78,7 +79,15 @@ def _friction(problem: Problem, told: Marched, elements: IntArray) -> tuple[dict
     if loaded.size:
         variables["normal_load"] = (("time", "loaded"), told.load[:, loaded], "")
         coordinates["loaded"] = (names[loaded], "")
+    rubs = np.array([i for i in elements if _rubs(c.laws[i])], dtype=np.int64)
+    if rubs.size:
+        variables["friction_loss"] = (("time", "rubbing"), told.lost[:, rubs], "energy")
+        coordinates["rubbing"] = (names[rubs], "")
     return variables, coordinates
+
+
+def _rubs(law: Law | None) -> bool:
+    return law is not None and (law.remembers or not law.carries_mean_torque)
 
 
 def ending(end: State) -> dict[str, Variable]:

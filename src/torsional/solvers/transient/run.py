@@ -74,7 +74,7 @@ def transient(
 
     Dimensions time, node, element: ``angle`` [rad], the deviation from the mean rotation, ``angular_velocity`` [rad/s],
     whole, ``acceleration``; ``twist`` and ``torque`` [Nm] of elements, damping and laws included; ``memory`` and
-    ``normal_load`` of friction; ``energy`` [J] by share.  Interrupted from the keyboard it gives what was reached, with
+    ``normal_load`` of friction, ``friction_loss`` [J] of each part that rubs; ``energy`` [J] by share.  Interrupted from the keyboard it gives what was reached, with
     a ``status`` that says so; ``method_share`` in the attributes is what the steps made or lost of the energy that
     passed through.  A step that produces energy is halved; ModelError where that does not help.
 
@@ -210,7 +210,7 @@ def _picked(told: Marched, times: Array) -> Marched:
     """The record at some of its moments."""
     near = np.searchsorted(told.time, times - 1e-9 * np.maximum(np.abs(times), 1e-3))
     at = np.unique(near[near < told.time.size])
-    fields = ("time", "angle", "speed", "acceleration", "torque", "memory", "load", "energy")
+    fields = ("time", "angle", "speed", "acceleration", "torque", "memory", "load", "lost", "energy")
     return told._replace(**{name: getattr(told, name)[at] for name in fields})
 
 
@@ -224,6 +224,7 @@ def _together(parts: Sequence[Marched], status: str) -> Marched:
         joined([part.torque for part in parts]),
         joined([part.memory for part in parts]),
         joined([part.load for part in parts]),
+        joined([part.lost for part in parts]),
         joined([part.energy for part in parts]),
         parts[-1].end,
         sum(part.steps for part in parts),

@@ -91,8 +91,11 @@ def from_zero(run: xr.Dataset) -> xr.Dataset:
     late = run.time.values >= -0.25 * float(run.attrs["step"])
     if not late.any():
         raise KeyboardInterrupt
+    if late.all():
+        return run
     kept = run.isel(time=late)
-    return kept.assign(energy=kept.energy - kept.energy.isel(time=0)) if not late.all() else run
+    counted = [name for name in ("energy", "friction_loss") if name in kept]
+    return kept.assign({name: (kept[name] - kept[name].isel(time=0)).assign_attrs(kept[name].attrs) for name in counted})
 
 
 def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
