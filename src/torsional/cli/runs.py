@@ -24,6 +24,7 @@ _ENERGIES = {
     "dampers": "lost in dampers",
     "friction": "lost in friction",
     "contacts": "lost in contacts",
+    "engaging": "lost as the gear engaged",
     "method": "made by the time steps themselves",
 }
 """The shares of the ledger that mean the same in every frame; the others count speeds from the mean one."""
@@ -45,7 +46,7 @@ def seconds(text: str, option: str, default: float) -> float:
 
 def run_tables(run: xr.Dataset, title: str, springs: Sequence[str]) -> list[Table]:
     """Peaks of the elements that are told, travel of springs against their stops, energies."""
-    return [_peaks(run, title), *_travel(run, springs), _energies(run)]
+    return [_peaks(run, title), *_travel(run, springs), *_phases(run), _energies(run)]
 
 
 def _peaks(run: xr.Dataset, title: str) -> Table:
@@ -94,6 +95,18 @@ def _travel(run: xr.Dataset, springs: Sequence[str]) -> list[Table]:
     return [Table("Springs against their stops", columns, rows)] if rows else []
 
 
+def _phases(run: xr.Dataset) -> list[Table]:
+    """Speeds of what is looked at, at the end of each phase; nothing where there is none."""
+    if "phase" not in run.coords:
+        return []
+    nodes = list(dict.fromkeys([run.attrs["crank"], *json.loads(run.attrs["looked_at"])]))
+    columns = [Column("phase"), Column("from", "time"), Column("to", "time")]
+    columns += [Column(f"{node} at its end", "speed") for node in nodes]
+    ends = zip(run.phase.values, run.phase_begin.values, run.phase_end.values, strict=True)
+    rows = [[str(n), float(a), float(b), *run.phase_speed.sel(phase=n, node=nodes).values.tolist()] for n, a, b in ends]
+    return [Table("Phases", columns, rows)]
+
+
 def _energies(run: xr.Dataset) -> Table:
     columns = [Column("energy up to the end"), Column("", "energy")]
     known = [str(name) for name in run.share.values]
@@ -114,7 +127,7 @@ def _rubbing(run: xr.Dataset, nothing: float) -> list[Sequence[object]]:
     own = [[f"  of it in {name}", lost.pop(name)] for name in told_elements(run) if name in lost]
     inner = sum(lost.values())
     listed = own + ([["  of it inside the absorber", inner]] if lost else [])
-    return [[told, value if abs(value) > nothing else 0.0] for told, value in listed]  # type: ignore[operator,arg-type]
+    return [[told, value if abs(value) > nothing else 0.0] for told, value in listed]  # type: ignore[arg-type]
 
 
 def chosen(run: xr.Dataset, nodes: Sequence[str], elements: Sequence[str]) -> xr.Dataset:

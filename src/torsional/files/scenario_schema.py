@@ -23,6 +23,7 @@ from torsional.files.scenario_blocks import (
     usual,
 )
 from torsional.files.schema.fields import Node, Speed, Torque
+from torsional.files.shift_schema import GearShift
 
 
 class EngineStart(Scenario):
@@ -95,8 +96,8 @@ class ClutchEngagement(Scenario):
     gear: GearName = Field("", description="default: the first one")
     speed: Speed | None = Field(None, description="of the engine before; default: 2/7 up its range")
     vehicle_at: SpeedOrZero = Field(0.0, description="speed of the gearbox input at which the vehicle rolls")
-    torque: Torque | None = Field(
-        None, description="mean engine torque at most, asked for by the governor; default: 0.3 of full load"
+    torque: TorqueOrZero | None = Field(
+        None, description="mean engine torque at most, asked for by the governor; 0: none; default: 0.3 of full load"
     )
     road_load: Torque | None = Field(None, description="resistance, at the node that takes up the load")
     clutch: ClutchLinings = Field(default_factory=usual(ClutchLinings, within=1.0))
@@ -104,26 +105,6 @@ class ClutchEngagement(Scenario):
     def moments(self) -> list[tuple[str, float]]:
         """The beginning of the engagement."""
         return [("clutch.engages", self.clutch.engages)]
-
-
-class GearShift(Scenario):
-    """The clutch closes after a shift: the vehicle rolls on, the engine still has the speed of the old gear."""
-
-    title: ClassVar[str] = "Gear shift"
-    scenario: Literal["gear_shift"]
-    duration: Time = 1.5
-    from_gear: GearName = Field("", description="default: the last but one")
-    to_gear: GearName = Field("", description="default: the last one")
-    speed: Speed | None = Field(None, description="of the engine, in the old gear; default: 4/7 up its range")
-    torque: TorqueOrZero | None = Field(
-        None, description="mean engine torque after the shift; default: 0.4 of full load"
-    )
-    torque_from: Moment = Field(0.6, description="when the engine begins to pull again")
-    clutch: ClutchLinings = Field(default_factory=usual(ClutchLinings, within=0.3))
-
-    def moments(self) -> list[tuple[str, float]]:
-        """The beginning of the engagement, and of the torque."""
-        return [("clutch.engages", self.clutch.engages), ("torque_from", self.torque_from)]
 
 
 class Stall(Scenario):

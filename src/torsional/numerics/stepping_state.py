@@ -98,7 +98,8 @@ class State(NamedTuple):
 
 class Records(NamedTuple):
     """What was recorded (R records): ``time`` (R,), ``q``, ``v``, ``acceleration`` (R, n), ``twist`` [rad] and
-    ``torque`` [Nm] (R, E), ``memory``, ``load`` and ``lost`` [J] (R, L) of the laws by address, ``ledger`` (R, entries)."""
+    ``torque`` [Nm] (R, E), ``memory``, ``load`` and ``lost`` [J] (R, L) of the laws by address, ``ledger``
+    (R, entries)."""
 
     time: Array
     q: Array

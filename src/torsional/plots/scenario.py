@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -16,6 +17,10 @@ from torsional.units import show
 
 ROW = 0.32
 """Height [inch] of the strip of one event."""
+SLANTED = 38.0
+"""Room [points] for the names of phases, aslant, under the title."""
+GLYPH = 0.011
+"""Width of a letter above the strips over that of the panels."""
 FILLS = ("#c9dcea", "#f3d9c0", "#cfe6da", "#ead6e2")
 
 
@@ -36,10 +41,11 @@ def plot_scenario(run: xr.Dataset) -> Figure:
     draw_motion(drawn[1:], run, nodes, _listed(run, "springs"), _listed(run, "watched"))
     draw_events(drawn[0], run)
     draw_capacity(last, run)
+    draw_phases(drawn, run)
     for axes in drawn[:-1]:
         axes.tick_params(labelbottom=False)
     last.set_xlabel("time [s]")
-    drawn[0].set_title(style.plain(_title(run), 100), loc="left")
+    drawn[0].set_title(style.plain(_title(run), 100), loc="left", pad=SLANTED if "phase" in run.coords else None)
     return figure
 
 
@@ -62,6 +68,27 @@ def draw_events(axes: Axes, run: xr.Dataset) -> None:
         named = style.plain(event) + (f", up to {show(float(most), told[event])}" if told.get(event) else "")
         axes.text(0.995, base + 0.4, named, transform=axes.get_yaxis_transform(), ha="right", va="center", fontsize=8)
     axes.set_ylim(0.1 - len(run.event), 1.0)
+
+
+def draw_phases(drawn: Sequence[Axes], run: xr.Dataset) -> None:
+    """A line through all panels where a phase begins, and its name above, aslant where there is little room."""
+    if "phase" not in run.coords:
+        return
+    top, whole = drawn[0], float(run.time[-1] - run.time[0])
+    for place, begin in enumerate(run.phase_begin.values):
+        for axes in drawn if place else ():
+            axes.axvline(float(begin), color=style.FAINT, linewidth=0.8, linestyle=(0, (2, 2)), zorder=0.5, gid="phase")
+    for name, begin, end in zip(run.phase.values, run.phase_begin.values, run.phase_end.values, strict=True):
+        told = style.plain(str(name))
+        top.text(
+            float(begin) + 0.004 * whole,
+            1.02,
+            told,
+            transform=top.get_xaxis_transform(),
+            fontsize=7.5,
+            va="bottom",
+            rotation=0 if len(told) * GLYPH < (end - begin) / whole else 25,
+        )
 
 
 def draw_capacity(axes: Axes, run: xr.Dataset) -> None:

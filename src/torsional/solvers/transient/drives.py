@@ -112,7 +112,8 @@ class Governor:
 
     It gives a torque [Nm] at the node ``acts_on``, or where that is "" a change of the cylinders' level [-].
     ``wanted`` [rad/s] at the node: a number or a `SpeedProfile`; ``proportional`` [Nms/rad] or [s/rad], ``integral``
-    [Nm/rad] or [1/rad].
+    [Nm/rad] or [1/rad].  With a node ``against`` it is the speed of ``sense`` less that of this one, both as they are
+    at the engine.
 
     >>> Governor("throw1", 62.8, acts_on="throw1", proportional=20.0, low=-100.0, high=300.0).integral
     0.0
@@ -125,6 +126,7 @@ class Governor:
     integral: float = 0.0
     low: float = -np.inf
     high: float = np.inf
+    against: str = ""
 
     def __post_init__(self) -> None:
         for name in ("proportional", "integral"):
@@ -138,7 +140,10 @@ class Governor:
         """One governor."""
         act = row_of(system, self.acts_on) if self.acts_on else None
         values = self.proportional, self.integral, self.low, self.high
-        return Acting(governors=(Governing(row_of(system, self.sense), act, as_speed(self.wanted).level, *values),))
+        sense = row_of(system, self.sense)
+        if self.against:
+            sense = sense / sense.sum() - (other := row_of(system, self.against)) / other.sum()
+        return Acting(governors=(Governing(sense, act, as_speed(self.wanted).level, *values),))
 
 
 def _constant(value: float) -> Level:

@@ -74,9 +74,10 @@ def transient(
 
     Dimensions time, node, element: ``angle`` [rad], the deviation from the mean rotation, ``angular_velocity`` [rad/s],
     whole, ``acceleration``; ``twist`` and ``torque`` [Nm] of elements, damping and laws included; ``memory`` and
-    ``normal_load`` of friction, ``friction_loss`` [J] of each part that rubs; ``energy`` [J] by share.  Interrupted from the keyboard it gives what was reached, with
-    a ``status`` that says so; ``method_share`` in the attributes is what the steps made or lost of the energy that
-    passed through.  A step that produces energy is halved; ModelError where that does not help.
+    ``normal_load`` of friction, ``friction_loss`` [J] of each part that rubs; ``energy`` [J] by share.  Interrupted
+    from the keyboard it gives what was reached, with a ``status`` that says so; ``method_share`` in the attributes is
+    what the steps made or lost of the energy that passed through.  A step that produces energy is halved; ModelError
+    where that does not help.
 
     M q̈ + C q̇ + K q + Σ w f(w·q, w·q̇, memory) = u(t, angle); generalised-α steps after Chung and Hulbert (J. Appl.
     Mech. 60 (1993) 371).

@@ -14,8 +14,8 @@ from torsional.studies.claims.trucks import Trucks, hinged, replaced, stiffness
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.running import run_plan
 
-GEARS = ("8", "10")
-SETTINGS = ("clutch.capacity=5000 Nm", "duration=1.2 s", "torque=300 Nm", "torque_from=1.1 s")
+GEARS, SPEED = ("8", "10"), 1400
+SETTINGS = (f"gear={GEARS[1]}", f"speed={SPEED} rpm", "clutch.capacity=5000 Nm", "duration=1.2 s", "torque=0 Nm")
 TIMES = (0.02, 0.05, 0.1, 0.2, 0.4, 0.8)
 STOPS = (2000.0, 2500.0, 3000.0, 3500.0)
 CONDITION = (
@@ -31,10 +31,17 @@ def stopped_at(model: Model, torque: float) -> Model:
     return replaced(model, spring, law=Hinges.staged([(torque, stiffness(model, spring))], stop_stiffness=hard))
 
 
+def rolling(model: Model) -> str:
+    """The setting by which the vehicle rolls as fast as in the old gear."""
+    before, after = (model.gears[gear].ratio for gear in GEARS)
+    return f"vehicle_at={SPEED * after / before!r} rpm"
+
+
 def engaged(model: Model, within: float) -> tuple[float, int]:
     """Peak torque of the DMF [Nm] and contacts with its stop, the clutch fully pressed ``within`` [s]."""
-    gears = [f"{key}={gear}" for key, gear in zip(("from_gear", "to_gear"), GEARS, strict=True)]
-    run = run_plan(planned(load_scenario("gear_shift", [*gears, *SETTINGS, f"clutch.within={within} s"]), model))
+    run = run_plan(
+        planned(load_scenario("clutch_engagement", [*SETTINGS, rolling(model), f"clutch.within={within} s"]), model)
+    )
     one = run.sel(element=model.landmarks.springs[0])
     return float(np.abs(one.torque.values).max()), int(one.stop_contacts)
 

@@ -1,4 +1,4 @@
-"""In gear: pedal, clutch, shift, brake and road."""
+"""In gear: pedal, clutch, brake and road."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from typing import Any
 
 from torsional.errors import ModelError
 from torsional.files.scenario_blocks import Scenario, SpeedGovernor
-from torsional.files.scenario_schema import ClutchEngagement, GearShift, Stall, TipIn, TipOut, TractionLoss
+from torsional.files.scenario_schema import ClutchEngagement, Stall, TipIn, TipOut, TractionLoss
 from torsional.model import Model
 from torsional.powertrain import Powertrain
+from torsional.solvers.transient.acting import Drive
 from torsional.studies.scenarios import lines, sizes
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import cylinders, fuel_cut, heat_for, pulse, ramp, speed_governor
@@ -38,7 +39,7 @@ def tip(block: TipIn | TipOut, model: Model) -> Plan:
     motor = cylinders(model, speed, most, (times, values))
     wanted = ramp(block.at, block.within, before, after)
     return Plan(
-        **_in_gear(block, model, lines.line_of(model, gear), gear),
+        **in_gear(block, model, lines.line_of(model, gear), gear),
         nodes=(model.landmarks.input,) if model.landmarks.input else (),
         drives=(motor,),
         speed=speed,
@@ -60,15 +61,10 @@ def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
     line, flywheel, capacity = lines.with_linings(lines.line_of(model, gear), model, block.clutch)
     load = lines.load_of(model)
     line = lines.resisted(line, load, sizes.at_wheels(model, block.road_load, ROLLING, "road_load"))
-    most, _ = heat_for(model, speed, [torque])
-    governor = SpeedGovernor.model_validate({"torque": torque, "droop": 0.1 * speed})
-    drives = (
-        cylinders(model, speed, most, ((0.0,), (0.0,))),
-        speed_governor(governor, lines.crank_of(model), speed),
-    )
+    drives = _kept_at(model, speed, torque)
     pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
     return Plan(
-        **_in_gear(block, model, line, gear, lines.LININGS),
+        **in_gear(block, model, line, gear, lines.LININGS),
         nodes=tuple(node for node in (model.landmarks.input, load) if node),
         drives=drives,
         speed=speed,
@@ -79,35 +75,13 @@ def clutch_engagement(block: ClutchEngagement, model: Model) -> Plan:
     )
 
 
-def gear_shift(block: GearShift, model: Model) -> Plan:
-    """The vehicle rolls as fast as in the old gear; the clutch brings the engine to the new gear's speed."""
-    if len(model.gears) < 2:
-        raise ModelError("a shift needs two gears", where="gears", found=f"{len(model.gears)}")
-    speed = sizes.speed(model, block.speed, MIDDLE)
-    old = lines.gear_of(model, block.from_gear, -2, "from_gear")
-    new = lines.gear_of(model, block.to_gear, -1, "to_gear")
-    if old == new:
-        raise ModelError("the gear stays the same", where="to_gear", found=f"'{new}'", remedy="name another one")
-    torque = sizes.torque(model, block.torque, 0.4, "torque")
-    within_stop(model, new, torque=torque)
-    line, flywheel, capacity = lines.with_linings(lines.line_of(model, new), model, block.clutch)
-    rolling = speed * model.gears[new].ratio / model.gears[old].ratio
-    most, shares = heat_for(model, speed, [0.0, torque])
-    pulls = ramp(block.torque_from, 0.1, *shares)
-    pressed = ramp(block.clutch.engages, block.clutch.within, 0.0, 1.0)
-    return Plan(
-        **_in_gear(block, model, line, new, lines.LININGS),
-        nodes=(model.landmarks.input,) if model.landmarks.input else (),
-        drives=(cylinders(model, speed, most, pulls),),
-        speed=speed,
-        lag=speed - rolling,
-        lagging=lines.behind(line, lines.LININGS, flywheel),
-        levels={"clutch": pressed},
-        shown={
-            "clutch capacity": (_times(pressed, capacity), "torque"),
-            "mean engine torque": (ramp(block.torque_from, 0.1, 0.0, torque), "torque"),
-        },
-    )
+def _kept_at(model: Model, speed: float, torque: float) -> tuple[Drive, ...]:
+    """Engine and governor of a speed; without torque the heat is that of no load, whatever the speed does."""
+    most, (none, _) = heat_for(model, speed, [0.0, torque])
+    if not torque:
+        return (cylinders(model, speed, most, ((0.0,), (none,))),)
+    governor = SpeedGovernor.model_validate({"torque": torque, "droop": 0.1 * speed})
+    return cylinders(model, speed, most, ((0.0,), (0.0,))), speed_governor(governor, lines.crank_of(model), speed)
 
 
 def stall(block: Stall, model: Model) -> Plan:
@@ -127,7 +101,7 @@ def stall(block: Stall, model: Model) -> Plan:
     )
     pressed = ramp(block.at, block.within, 0.0, 1.0)
     return Plan(
-        **_in_gear(block, model, line, gear),
+        **in_gear(block, model, line, gear),
         nodes=(_turning(line, block.tyres), lines.load_of(model)),
         drives=drives,
         speed=speed,
@@ -150,7 +124,7 @@ def traction_loss(block: TractionLoss, model: Model) -> Plan:
     most, (share,) = heat_for(model, speed, [torque])
     grip = pulse(block.lost, block.found - block.lost, block.slippery, 1.0)
     return Plan(
-        **_in_gear(block, model, line, gear),
+        **in_gear(block, model, line, gear),
         nodes=(_turning(line, block.tyres), lines.load_of(model)),
         drives=(cylinders(model, speed, most, ((0.0,), (share,))),),
         speed=speed,
@@ -195,7 +169,8 @@ def _times(knots: Any, factor: float) -> Any:
     return knots[0], tuple(factor * value for value in knots[1])
 
 
-def _in_gear(block: Scenario, model: Model, line: Powertrain, gear: str, *watched: str) -> dict[str, Any]:
+def in_gear(block: Scenario, model: Model, line: Powertrain, gear: str, *watched: str) -> dict[str, Any]:
+    """What a plan in gear takes from scenario and model."""
     marks = model.landmarks
     return {
         "title": f"{block.title}: {block.name or model.name}" + (f", gear {gear}" if gear else ""),

@@ -76,6 +76,30 @@ def scheduled(run: xr.Dataset, shown: Mapping[str, tuple[tuple[Sequence[float], 
     return data.assign_attrs(schedule_quantities=json.dumps(told))
 
 
+def phased(run: xr.Dataset, phases: Sequence[tuple[str, float, float]], crank: str) -> xr.Dataset:
+    """The run with what happened one after the other: ``phase_begin`` and ``phase_end`` [s] of each ``phase``, and
+    ``phase_speed`` (phase, node) [rad/s], the mean over the last cycle of the engine in it; as far as it was reached.
+    """
+    last = float(run.time[-1])
+    listed = [(name, begin, min(end, last)) for name, begin, end in phases if begin < last]
+    if not listed:
+        return run
+    names, begins, ends = zip(*listed, strict=True)
+    speeds = [_late(run.angular_velocity, begin, end, crank) for _, begin, end in listed]
+    return run.assign_coords(phase=list(names)).assign(
+        phase_begin=("phase", list(begins), _attrs("time")),
+        phase_end=("phase", list(ends), _attrs("time")),
+        phase_speed=(("phase", "node"), np.array(speeds), _attrs("angular_velocity")),
+    )
+
+
+def _late(speeds: xr.DataArray, begin: float, end: float, crank: str) -> Array:
+    """Means over the last cycle of the engine before an end, or from the beginning where that is later."""
+    turning = abs(float(speeds.sel(node=crank).sel(time=end, method="nearest")))
+    cycle = 4 * np.pi / turning if turning > 0 else end - begin
+    return np.asarray(speeds.sel(time=slice(max(begin, end - cycle), end)).mean("time").values)
+
+
 def _interpolated(time: Array, knots: Sequence[float], values: Sequence[float]) -> Array:
     """Straight lines; of two knots at one time the later one counts from there on."""
     at, value = np.asarray(knots, dtype=float), np.asarray(values, dtype=float)

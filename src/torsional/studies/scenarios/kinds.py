@@ -8,7 +8,7 @@ from typing import Any
 from torsional.files.scenario import adapted
 from torsional.files.scenario_blocks import Scenario
 from torsional.model import Model
-from torsional.studies.scenarios import driving, starting
+from torsional.studies.scenarios import driving, shifting, starting
 from torsional.studies.scenarios.plan import Plan
 
 PLANNERS: dict[str, Callable[[Any, Model], Plan]] = {
@@ -17,7 +17,7 @@ PLANNERS: dict[str, Callable[[Any, Model], Plan]] = {
     "tip_in": driving.tip,
     "tip_out": driving.tip,
     "clutch_engagement": driving.clutch_engagement,
-    "gear_shift": driving.gear_shift,
+    "gear_shift": shifting.gear_shift,
     "stall": driving.stall,
     "traction_loss": driving.traction_loss,
     "idle_pulse": starting.idle_pulse,

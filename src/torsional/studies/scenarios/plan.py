@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,21 @@ SETTLING = 1.0
 """Time [s] before the time zero that a vibration has to become steady."""
 
 
+class Span(NamedTuple):
+    """From a time ``at`` [s] on it is another ``line``."""
+
+    at: float
+    line: Powertrain
+
+
+class Phase(NamedTuple):
+    """What happens from a time to another [s], in words."""
+
+    name: str
+    begin: float
+    end: float
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A scenario ready to be stepped: plain values for `transient`.
@@ -34,7 +50,8 @@ class Plan:
     the time zero; ``stuck``: linings that carry their share of it; ``levels`` of normal loads over time.  ``crank``:
     the node of the engine's speed; ``springs``, ``watched``: absorber springs, and further connections, to be drawn;
     ``shown``: what happens, over time, by its name and quantity; ``inner``: parts of an absorber in detail, which get
-    no row of their own.
+    no row of their own; ``later``: lines that take the place of the first one, one after the other, at a constant
+    ``speed``; ``phases`` of what happens, to be marked.
     """
 
     title: str
@@ -58,6 +75,8 @@ class Plan:
     gear: str = ""
     inner: frozenset[str] = frozenset()
     following: float = FOLLOWING
+    later: tuple[Span, ...] = ()
+    phases: tuple[Phase, ...] = ()
 
     def started(self, system: System) -> State:
         """Where it starts: as asked for, but turned, and part of it slower, and linings that hold a torque."""

@@ -12,13 +12,15 @@ from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Scenario
+from torsional.laws import Law
 from torsional.model import Model
-from torsional.solvers.transient.run import Progress, transient
+from torsional.solvers.transient.run import Progress
 from torsional.solvers.transient.speed_profile import as_speed
-from torsional.studies.scenarios.figures import read_off, scheduled
+from torsional.studies.scenarios.figures import phased, read_off, scheduled
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.plan import Plan
-from torsional.system import System, assemble
+from torsional.studies.scenarios.spans import moved
+from torsional.system import System
 from torsional.units import show
 
 FINEST, SLOWEST = 0.01, 60.0
@@ -35,7 +37,8 @@ def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | No
     """What happens to a model in a scenario: the Dataset of `transient` with peaks, travels and contacts.
 
     ``scenario``: as `load_scenario` gives it, or the name of a kind or of a file, which is loaded as it is.
-    ``schedule`` (event, time) is what was done; attributes name scenario, gear and what is worth looking at.
+    ``schedule`` (event, time) is what was done, ``phase_speed`` (phase, node) how fast all was at the end of each phase
+    of a shift; attributes name scenario, gear and what is worth looking at.
     Interrupted from the keyboard it gives what was reached, ``status`` says so.
     Raises ModelError for gears, nodes, torques and values that cannot be, and for steps too large for the line.
     """
@@ -47,22 +50,8 @@ def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | No
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     """The run of a plan."""
     _refuse_coarse(plan)
-    system = assemble(plan.line)
-    step, settling = plan.step or STEP, plan.settling
-    run = transient(
-        system,
-        plan.drives,
-        plan.duration + settling,
-        plan.started(system).since(-settling),
-        speed=plan.speed,
-        hold=plan.hold,
-        levels=plan.levels,
-        reference=plan.crank,
-        reference_time=plan.following,
-        step=step,
-        output=max(OUTPUT, step),
-        progress=progress,
-    )
+    step = plan.step or STEP
+    run, turning = moved(plan, step, max(OUTPUT, step), progress)
     run = from_zero(run)
     if plan.step is not None and "refined" in run.attrs:
         told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
@@ -71,8 +60,10 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     listed = {"springs": plan.springs, "watched": plan.watched, "looked_at": plan.nodes}
     told = {key: json.dumps(names) for key, names in listed.items()}
     run = with_tabs(run, plan)
-    figures = with_figures(run, system, (*plan.springs, *plan.watched), plan.inner)
-    return scheduled(figures, plan.shown).assign_attrs({**named, **told})
+    systems = [own.system for own in turning]
+    figures = with_figures(run, systems, (*plan.springs, *plan.watched), plan.inner)
+    whole = phased(scheduled(figures, plan.shown), plan.phases, plan.crank)
+    return whole.assign_attrs({**named, **told})
 
 
 def _refuse_coarse(plan: Plan) -> None:
@@ -94,8 +85,8 @@ def from_zero(run: xr.Dataset) -> xr.Dataset:
     if late.all():
         return run
     kept = run.isel(time=late)
-    counted = [name for name in ("energy", "friction_loss") if name in kept]
-    return kept.assign({name: (kept[name] - kept[name].isel(time=0)).assign_attrs(kept[name].attrs) for name in counted})
+    counted = {name: kept[name] for name in ("energy", "friction_loss") if name in kept}
+    return kept.assign({name: (all_ - all_.isel(time=0)).assign_attrs(all_.attrs) for name, all_ in counted.items()})
 
 
 def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
@@ -110,12 +101,16 @@ def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
     return run.assign(torque=whole.transpose(*run.torque.dims).assign_attrs(run.torque.attrs))
 
 
-def with_figures(run: xr.Dataset, system: System, first: Sequence[str], inner: Collection[str] = ()) -> xr.Dataset:
+def with_figures(
+    run: xr.Dataset, systems: Sequence[System], first: Sequence[str], inner: Collection[str] = ()
+) -> xr.Dataset:
     """The run with what `read_off` adds; ``told`` names the elements worth a row, some ``first``, dampers and ``inner``
-    ones left out."""
-    c = system.connections
-    laws = dict(zip(c.names, c.laws, strict=True))
-    carrying = [name for name, k in zip(c.names, c.stiffness, strict=True) if k > 0 or laws[name] is not None]
+    ones left out.  ``systems``: all that moved in it."""
+    laws: dict[str, Law | None] = {}
+    carrying: dict[str, None] = {}
+    for c in (system.connections for system in systems):
+        laws |= dict(zip(c.names, c.laws, strict=True))
+        carrying |= dict.fromkeys(n for n, k in zip(c.names, c.stiffness, strict=True) if k > 0 or laws[n] is not None)
     outer = [name for name in carrying if name not in inner]
-    listed = dict.fromkeys([*(name for name in first if name in c.names), *outer])
-    return read_off(run, laws).assign_attrs(told=json.dumps(list(listed)))
+    listed = [name for name in dict.fromkeys([*first, *outer]) if name in run.element.values]
+    return read_off(run, laws).assign_attrs(told=json.dumps(listed))

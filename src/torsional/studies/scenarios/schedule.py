@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
 
 from torsional.errors import ModelError
 from torsional.files.scenario_blocks import SpeedGovernor, Starter
 from torsional.model import Model
+from torsional.solvers.transient.acting import Acting, Drive, Source
 from torsional.solvers.transient.cylinders import CylinderTorques
-from torsional.solvers.transient.drives import Governor, TorqueHistory
+from torsional.solvers.transient.drives import Governor, TorqueHistory, all_acting
+from torsional.solvers.transient.profiles import Level
 from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.system import System
 from torsional.units import show
+
+LET_GO = 1e-3
+"""Time [s] within which a line that was held back is free to accelerate."""
 
 Knots = tuple[tuple[float, ...], tuple[float, ...]]
 """Times [s] and values, straight lines between them; a jump is two knots at one time."""
@@ -93,3 +102,21 @@ def heat_for(model: Model, speed: float, torques: Sequence[float]) -> tuple[floa
 def torque_pulse(node: str, at: float, length: float, height: float) -> TorqueHistory:
     """A torque [Nm] at a node from ``at`` [s] on for ``length`` [s]."""
     return TorqueHistory(node, *pulse(at, length, height))
+
+
+@dataclass(frozen=True, eq=False)
+class HeldBack:
+    """What keeps a line from accelerating under the mean torques of some ``drives`` up to the time zero.
+
+    It acts on every mass in proportion to its inertia, as its own acceleration does from there on, so that springs
+    are twisted beforehand as they are afterwards: −M 1 a, a = Σ torque / Σ M.
+    """
+
+    drives: tuple[Drive, ...]
+
+    def acting(self, system: System, speed: SpeedProfile) -> Acting:
+        """One source along the momentum of the rigid rotation."""
+        told = all_acting(self.drives, system, speed)
+        mean = sum(float(row.sum() * level.at(0.0)) for row, level in told.taken_up)
+        row = np.asarray(system.M.sum(axis=1))
+        return Acting((Source(row, level=Level(np.array([0.0, LET_GO]), np.array([-mean / row.sum(), 0.0]))),))
