@@ -17,6 +17,14 @@ ROOT = Path(__file__).parents[2]
 @pytest.fixture(scope="module")
 def run() -> xr.Dataset:
     shift = ["duration=0.8 s", "clutch.within=0.02 s", "clutch.capacity=6 kNm", "torque_from=0.7 s"]
+    shift += ["torque_off=20 ms", "off_within=40 ms", "clutch.opens=60 ms", "clutch.opens_within=20 ms"]
+    shift += [
+        "synchroniser.begins=80 ms",
+        "synchroniser.within=100 ms",
+        "clutch.engages=0.2 s",
+        "before=0 Nm",
+        "torque_within=50 ms",
+    ]
     overriding = load_scenario(
         "gear_shift", [*shift, "from_gear=9", "model.absorber.stop_torque=1500 Nm", "torque=500"]
     )
@@ -27,13 +35,19 @@ def test_a_scenario_shows_what_was_done_and_what_it_did(run: xr.Dataset) -> None
     figure = plots.plot_scenario(run)
     torques, events, speeds, twists = figure.axes
     assert [text.get_text() for text in events.texts] == [
+        "engine torque asked for, up to 500 Nm",
         "clutch capacity, up to 6000 Nm",
-        "mean engine torque, up to 500 Nm",
+        f"synchroniser, up to {float(run.schedule.sel(event='synchroniser').max()):.5g} Nm",
+        *("gear 9", "torque off", "clutch opens", "neutral", "clutch open", "clutch closes", "gear 12"),
     ]
-    assert [line.get_label() for line in speeds.lines] == ["primary", "gearbox input"]
+    marked = [float(np.asarray(line.get_xdata())[0]) for line in speeds.lines if line.get_gid() == "phase"]
+    assert marked == pytest.approx([0.02, 0.06, 0.08, 0.18, 0.2, 0.7])
+    labels = [line.get_label() for line in speeds.lines if line.get_gid() == "signal"]
+    assert labels == ["primary", "gearbox input", "vehicle, as at the engine"]
     drawn = [line for line in twists.lines if line.get_gid() == "signal"]
     assert np.radians(drawn[0].get_ydata()) == pytest.approx(run.twist.sel(element="dmf").values)
-    assert [line.get_label() for line in torques.lines] == ["dmf", "clutch linings", "clutch capacity"]
+    shown = [line.get_label() for line in torques.lines if line.get_gid() != "phase"]
+    assert shown == ["dmf", "clutch linings", "clutch capacity"]
     speed = np.asarray(speeds.lines[1].get_ydata()) * np.pi / 30
     assert speed == pytest.approx(run.angular_velocity.sel(node="gearbox_input").values)
 

@@ -10,7 +10,7 @@ import pytest
 from torsional.files.scenario import load_scenario
 from torsional.solvers.harmonic import harmonic_response
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.engagement import STOPS, TIMES, stopped_at
+from torsional.studies.claims.engagement import SETTINGS, STOPS, TIMES, rolling, stopped_at
 from torsional.studies.claims.start_up import DAMPINGS, STARTERS, passed, sprung
 from torsional.studies.claims.trucks import Trucks, hinged
 from torsional.studies.claims.trucks import sprung as linearised
@@ -69,16 +69,10 @@ def test_g3_energy_decides_whether_the_stop_is_met(trucks: Trucks, outcomes: Map
 
 def test_g3_momentum_of_the_shift(trucks: Trucks) -> None:
     """Engine and vehicle meet at the speed that their momentum says, the vehicle being a hundred times as heavy."""
-    settings = [
-        "duration=1.2 s",
-        "torque=0 Nm",
-        "torque_from=1.1 s",
-        "clutch.within=0.1 s",
-        "from_gear=8",
-        "to_gear=10",
-    ]
     model = trucks.dmf
-    plan = planned(load_scenario("gear_shift", settings), model)
+    settings = [*SETTINGS, rolling(model), "clutch.within=0.1 s", "road_load=1 Nm"]
+    plan = planned(load_scenario("clutch_engagement", settings), model)
+    assert plan.speed - plan.lag == pytest.approx(1400 * np.pi / 30 * 1.63 / 2.70)  # type: ignore[operator]
     run = run_plan(plan)
     system = assemble(plan.line)
     slow = np.array([node in plan.lagging for node in system.coordinates])

@@ -23,6 +23,11 @@ BAD = [
     ("engine_start", "step=0.5 s", ["step", "too large", "0.5 s", "0.02 s"]),
     ("engine_start", "starter.torque=30 rpm", ["starter.torque", "rpm is an angular velocity"]),
     ("traction_loss", "found=0.1 s", ["found", "0.1 s", "after 0.3 s"]),
+    ("gear_shift", "clutch.opens=0.3 s", ["clutch.opens", "the engine still pulls", "0.3 s", "0.4 s and later"]),
+    ("gear_shift", "synchroniser.begins=0.45 s", ["synchroniser.begins", "not open yet", "0.5 s and later"]),
+    ("gear_shift", "synchroniser.within=1 s", ["clutch.engages", "not in yet", "1.2 s", "1.55 s and later"]),
+    ("gear_shift", "torque_from=1 s", ["torque_from", "the clutch is still open", "1.2 s and later"]),
+    ("gear_shift", "duration=1.4 s", ["torque_from", "nothing would be seen"]),
     ("stall", "torsional_scenario=2", ["torsional_scenario", "version", "allowed: 1"]),
     ("engine_strat", "duration=1 s", ["engine_strat", "did you mean 'engine_start'?"]),
 ]

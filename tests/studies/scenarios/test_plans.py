@@ -81,7 +81,11 @@ def test_plans_keep_every_inertia_of_the_line(truck: Model, kind: str) -> None:
     """What a scenario adds is small: the rest is the model's own line."""
     plan = planned(load_scenario(kind), truck)
     names = set(plan.line.components)
-    whole = set(line.in_neutral(truck).components if plan.gear == "neutral" else truck.powertrain(plan.gear).components)
+    whole = set(
+        line.in_neutral(truck).components
+        if plan.gear == "neutral"
+        else truck.powertrain(plan.gear.split()[0]).components
+    )
     added = names - whole
     assert whole <= names
     assert added <= {line.LINING, line.LININGS, line.BRAKE, line.PATCH, line.ROAD, line.RESISTANCE}
@@ -100,14 +104,14 @@ def test_linings_stand_between_flywheel_and_damper(truck: Model) -> None:
 
 def test_a_shift_starts_with_the_speeds_of_the_old_gear(truck: Model) -> None:
     plan = planned(load_scenario("gear_shift", ["from_gear=11", "to_gear=12", "speed=1400 rpm"]), truck)
-    # the vehicle turns the input by 1.00 over 1.27 of the engine's speed
-    assert plan.speed - plan.lag == pytest.approx(1400 * RPM / 1.27)
     system = assemble(plan.line)
-    state = plan.started(system)
-    assert not isinstance(state, str)
     vehicle = system.T[system.node_index("vehicle")]
-    whole = vehicle @ (state.speed + plan.speed)
-    assert whole == pytest.approx(1400 * RPM / 1.27 / 2.85)
+    # the vehicle turns by 1.27 and 2.85 slower than the engine, vibration of a hundredth of a per cent on top
+    assert vehicle @ (plan.started(system).speed + plan.speed) == pytest.approx(1400 * RPM / 1.27 / 2.85, rel=1e-4)
+    assert [span.at for span in plan.later] == pytest.approx([0.55, 0.8])
+    neutral, new = (span.line for span in plan.later)
+    assert neutral["synchroniser"].ratio == new["gear"].ratio == 1.0  # type: ignore[attr-defined]
+    assert plan.line["gear"].ratio == pytest.approx(1.27)  # type: ignore[attr-defined]
 
 
 def test_linings_that_stick_carry_the_mean_torque_from_the_start(truck: Model) -> None:
@@ -129,6 +133,10 @@ BAD = [
     ("clutch_engagement", "torque=3600 Nm", ["torque", "stop", "3600 Nm"]),
     ("tip_out", "after=-3000 Nm", ["no engine brakes so much", "-3000 Nm"]),
     ("gear_shift", "to_gear=11", ["to_gear", "stays the same"]),
+    ("gear_shift", "from_gear=13", ["from_gear", "there is no gear '13'", "allowed: 1, 2"]),
+    ("gear_shift", "from_gear=1", ["to_gear", "too slowly in gear '12'", "93.7", "600 rpm to 2000 rpm"]),
+    ("gear_shift", "to_gear=9", ["to_gear", "too fast in gear '9'", "to 2000 rpm"]),
+    ("gear_shift", "clutch.capacity=900 Nm", ["before", "clutch would slip", "1000 Nm", "up to 900 Nm"]),
     ("stall", "node=whels", ["node", "did you mean 'wheels'?"]),
     ("traction_loss", "tyres=tires", ["tyres", "did you mean 'tyres'?"]),
     ("clutch_engagement", "vehicle_at=1500 rpm", ["vehicle_at", "1500 rpm", "up to 1000 rpm"]),

@@ -68,9 +68,20 @@ def as_one(runs: Sequence[xr.Dataset], turning: Sequence[Turning]) -> xr.Dataset
     following = [run.isel(time=slice(1, None)) if place else run for place, run in enumerate(_summed(filled))]
     whole = xr.concat(following, "time", data_vars="minimal", coords="minimal", compat="override", join="override")
     ends = runs[-1][[name for name in runs[-1].data_vars if str(name).startswith("end_")]]
-    return whole.merge(ends).assign_attrs(_attributes(runs))
+    return whole.merge(ends).assign_attrs(_attributes(runs) | _hard(whole))
 
 
+def _hard(run: xr.Dataset) -> dict[str, str]:
+    """What is to be said where a gear engaged before its synchroniser was done."""
+    gone, rubbed = (float(run.energy.sel(share=name)[-1]) for name in (ENGAGING, "friction"))
+    if gone <= HARD * rubbed:
+        return {}
+    told = f"the gear engaged before its synchroniser was done, {gone:.3g} J were lost at once"
+    return {"unsynchronised": f"{told}; give it more time or torque"}
+
+
+HARD = 0.05
+"""Share of what friction takes from which the loss of a gear that engages is told."""
 _NAMED = ("element", "friction", "loaded", "rubbing")
 
 
