@@ -29,7 +29,7 @@ BAD = [
     (["engine_start", "-s", "duration=-1s"], ["duration", "must be positive", "'-1s'"]),
     (["engine_start", "-s", "starter.sped=3"], ["starter.sped", "did you mean 'speed'?"]),
     (["engine_start", "-s", "step=0.1s"], ["step", "too large", "0.1 s", "at most a hundredth"]),
-    (["engine_start", "-s", "starter"], ["path=value", "'starter'"]),
+    (["engine_start", "-s", "starter"], ["path=value", "'starter'", "e.g. starter.speed=150rpm"]),
     (["engine_start", "--set", "absorber.dampin=3"], ["absorber.dampin", "did you mean 'damping'?"]),
     (["engine_start", "-o", "x.html"], ["--output", "'.html'"]),
 ]

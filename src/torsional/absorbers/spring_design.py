@@ -116,7 +116,7 @@ class SpringFlywheel(ABC):
                 where="rated_torque",
                 found=f"{rated:g} Nm",
                 allowed=f"at most {carried:.4g} Nm, at {math.degrees(end):.3g}°",
-                remedy="stiffer or longer springs, or more way to the stop",
+                remedy="stiffer or longer springs, more way to the stop, or a lower rated torque",
             )
 
 

@@ -35,15 +35,15 @@ def changed(model: Model, *edits: Edit) -> Model:
     return rebuilt(model, document)
 
 
-def parsed_edit(text: str) -> tuple[str, Any]:
-    """Path and value of a text path=value; a value in brackets is read as YAML.
+def parsed_edit(text: str, example: str = "absorber.stages.0.stiffness=10kNm/rad") -> tuple[str, Any]:
+    """Path and value of a text path=value; a value in brackets is read as YAML.  ``example``: what is told where it is
+    not one.
 
     >>> parsed_edit("clutch.stages = [{up_to: 100 Nm, stiffness: 5e3}]")
     ('clutch.stages', [{'up_to': '100 Nm', 'stiffness': 5000.0}])
     """
     path, equals, value = (part.strip() for part in text.partition("="))
     if not (equals and path and value):
-        example = "absorber.stages.0.stiffness=10kNm/rad"
         raise ModelError(
             "a change is written path=value", found=quoted(text), remedy=f"e.g. {example}; null removes a key"
         )

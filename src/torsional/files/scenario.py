@@ -21,6 +21,7 @@ from torsional.model import Model
 from torsional.units import quoted
 
 SUFFIXES = (".yaml", ".yml", ".json")
+EXAMPLE = "starter.speed=150rpm"
 
 
 @checked
@@ -61,7 +62,7 @@ def adapted(model: Model, scenario: Scenario) -> Model:
 def _edited(tree: Tree, changes: Sequence[str]) -> Tree:
     data = copy.deepcopy(tree.data)
     for edit in changes:
-        path, value = parsed_edit(edit)
+        path, value = parsed_edit(edit, EXAMPLE)
         put(data, path, value)
     return Tree(data, tree.lines, tree.file)
 
