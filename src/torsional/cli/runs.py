@@ -125,6 +125,8 @@ def _rubbing(run: xr.Dataset, nothing: float) -> list[Sequence[object]]:
         return []
     lost = {str(name): float(run.friction_loss.sel(rubbing=name)[-1]) for name in run.rubbing.values}
     own = [[f"  of it in {name}", lost.pop(name)] for name in told_elements(run) if name in lost]
+    engine = [name for name in lost if name.removeprefix("friction_") in run.node.values]
+    own += [["  of it in the engine", sum(lost.pop(name) for name in engine)]] if engine else []
     inner = sum(lost.values())
     listed = own + ([["  of it inside the absorber", inner]] if lost else [])
     return [[told, value if abs(value) > nothing else 0.0] for told, value in listed]  # type: ignore[arg-type]

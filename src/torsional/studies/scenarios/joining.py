@@ -60,8 +60,10 @@ def carried_over(state: State, old: Turning, new: Turning, crank: str) -> State:
     """
     before, places = old.speeds(state.speed), _places(old, new)
     speed = _met(new, before[places])
-    memory = dict(zip(old.system.connections.names, state.memory, strict=True))
-    kept = np.array([memory.get(name, 0.0) for name in new.system.connections.names])
+    names = old.system.connections.names
+    memory = dict(zip(names, state.memory, strict=False))
+    own = [memory.get(name, 0.0) for name in new.system.connections.names]
+    kept = np.array([*own, *state.memory[len(names) :]])  # behind them what drives remember, as the engine's friction
     angle = _angles(state, old, new, crank, places)
     return State(state.time, angle, speed, kept, state.integral, state.reference)
 

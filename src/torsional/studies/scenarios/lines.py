@@ -16,7 +16,7 @@ from torsional.stamps import GROUND
 from torsional.studies.claims.trucks import reached
 from torsional.studies.scenarios import sizes
 
-LINING, LININGS = "clutch_lining", "clutch_linings"
+LINING, LININGS, SYNCHRONISER = "clutch_lining", "clutch_linings", "synchroniser"
 BRAKE, PATCH, ROAD, RESISTANCE = "brake", "contact_patch", "road", "road_load"
 PATCH_INERTIA = 1.0
 """Of the tread in contact with the road [kgm²]: little beside a wheel."""

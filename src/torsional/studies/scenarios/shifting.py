@@ -17,11 +17,11 @@ from torsional.stamps import Mass
 from torsional.studies.claims.trucks import reached
 from torsional.studies.scenarios import lines, sizes
 from torsional.studies.scenarios.driving import MIDDLE, ROLLING, in_gear, within_stop
+from torsional.studies.scenarios.lines import SYNCHRONISER
 from torsional.studies.scenarios.plan import Phase, Plan, Span
 from torsional.studies.scenarios.schedule import NEVER, HeldBack, Knots, cylinders, heat_for
 from torsional.units import show
 
-SYNCHRONISER, ROAD = "synchroniser", "road"
 RUBBING, PRESSED = 0.6, 0.1
 """Shares of its time that a synchroniser rubs, where no torque is given, and after which its cones are pressed."""
 STUCK = 0.01

@@ -12,6 +12,7 @@ from torsional.solvers.transient.marching import COMPLETE
 from torsional.solvers.transient.run import Progress, transient
 from torsional.solvers.transient.starts import State
 from torsional.studies.scenarios.joining import Turning, carried_over
+from torsional.studies.scenarios.lines import SYNCHRONISER
 from torsional.studies.scenarios.plan import Plan
 
 ENGAGING, STORED = "engaging", ("kinetic", "strain")
@@ -73,15 +74,15 @@ def as_one(runs: Sequence[xr.Dataset], turning: Sequence[Turning]) -> xr.Dataset
 
 def _hard(run: xr.Dataset) -> dict[str, str]:
     """What is to be said where a gear engaged before its synchroniser was done."""
-    gone, rubbed = (float(run.energy.sel(share=name)[-1]) for name in (ENGAGING, "friction"))
-    if gone <= HARD * rubbed:
+    gone, known = float(run.energy.sel(share=ENGAGING)[-1]), "friction_loss" in run and SYNCHRONISER in run.rubbing
+    if not known or gone <= HARD * float(run.friction_loss.sel(rubbing=SYNCHRONISER)[-1]):
         return {}
     told = f"the gear engaged before its synchroniser was done, {gone:.3g} J were lost at once"
     return {"unsynchronised": f"{told}; give it more time or torque"}
 
 
 HARD = 0.05
-"""Share of what friction takes from which the loss of a gear that engages is told."""
+"""Share of what the cones take from which the loss of a gear that engages is told."""
 _NAMED = ("element", "friction", "loaded", "rubbing")
 
 
