@@ -17,6 +17,9 @@ from torsional.solvers.transient.starts import State
 
 Coordinates = dict[str, tuple[object, str] | tuple[object, str, str]]
 
+FRAME = "speed of the frame that deviations count from"
+"""What `speed` is in time: the mean speed of an engine only where its own does not change."""
+
 
 def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: object) -> xr.Dataset:
     """Angles, speeds and accelerations of nodes, twists and torques of elements, the ledger of energy, and the last
@@ -34,7 +37,7 @@ def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: 
         "speed_ratio": (system.speed_ratio[nodes], "gear_ratio", "node"),
     }
     rubbing, named = _friction(problem, told, elements)
-    return dataset(
+    found = dataset(
         _motion(problem, told, frame, nodes, elements) | rubbing | ending(told.end),
         coordinates | named,
         analysis="transient",
@@ -48,6 +51,8 @@ def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: 
         system_hash=problem.line_hash,
         **settings,
     )
+    found.speed.attrs["long_name"] = FRAME
+    return found
 
 
 def _motion(problem: Problem, told: Marched, frame: Array, nodes: IntArray, elements: IntArray) -> dict[str, Variable]:
