@@ -32,13 +32,17 @@ class Claim:
 @dataclass(frozen=True)
 class Finding:
     """What the models show: ``reproduced`` or not, under which ``condition`` (load, gear, amplitude), the ``figures``
-    with their units in brackets, the ``reason`` where something stands against the claim, curves as a ``dataset``."""
+    with their units in brackets, the ``reason`` where something stands against the claim, curves as a ``dataset``.
+
+    ``proviso``: where the claim holds in one reading of its words or one region alone, which one.
+    """
 
     reproduced: bool
     condition: str
     figures: Mapping[str, Figure]
     reason: str = ""
     dataset: xr.Dataset | None = field(default=None, compare=False)
+    proviso: str = ""
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,14 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """Reproduced or not, in words."""
-        return "reproduced" if self.finding.reproduced else "not reproduced"
+        """Reproduced, reproduced with a condition or not, in words."""
+        if not self.finding.reproduced:
+            return "not reproduced"
+        return "reproduced with a condition" if self.finding.proviso else "reproduced"
 
     def __str__(self) -> str:
         told = "; ".join(f"{name}: {shown(value)}" for name, value in self.finding.figures.items())
-        because = f" — {self.finding.reason}" if self.finding.reason else ""
+        because = "".join(f" — {text}" for text in (self.finding.proviso, self.finding.reason) if text)
         return f"{self.claim.id} {self.verdict} ({self.finding.condition}): {told}{because}"
 
 

@@ -50,9 +50,9 @@ EXACT = 1e-9
 """Tolerance of the motion that the others are measured by."""
 
 
-def loosened(model: Model) -> Model:
-    """The truck with its flywheels' springs as `DESIGN`; raises ModelError where it has no such flywheels."""
-    parts = straight_spring_flywheel(DESIGN).components
+def loosened(model: Model, design: StraightSprings = DESIGN) -> Model:
+    """The truck with its flywheels' springs by a design; raises ModelError where it has no such flywheels."""
+    parts = straight_spring_flywheel(design).components
     missing = {"primary", "secondary", "dmf"} - set(model.components)
     if missing:
         raise ModelError("the truck has no dual mass flywheel to put springs into", found=f"without {min(missing)}")
@@ -67,11 +67,12 @@ class LooseMotion:
     model: Model
     speed: float = SPEED
     torque: float = TORQUE
+    design: StraightSprings = DESIGN
 
     @cached_property
     def system(self) -> System:
         """The line in top gear."""
-        return assemble(loosened(self.model).powertrain())
+        return assemble(loosened(self.model, self.design).powertrain())
 
     @cached_property
     def excitation(self) -> Excitation:

@@ -1,4 +1,4 @@
-"""The claims about stepping in time with gap-activated springs (E1, E2)."""
+"""The claim about whole runs with gap-activated springs against general integrators (E1)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
-from torsional.numerics.stepping import Settings, begin, march
 from torsional.solvers.transient import transient
-from torsional.studies.claims.answers import floats, sweep
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.loose_springs import SAMPLING, SPAN, LooseMotion
 from torsional.studies.claims.trucks import Trucks
-from torsional.units import RPM
 
 CONDITION = (
     "the truck's DMF with straight springs in three channels, their play 0.7° to 1°, shoes and tabs that only push, no "
@@ -30,14 +26,6 @@ STEP = 1e-4
 STIFF = ("LSODA", "BDF", "Radau")
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 ROUNDS = 3
-STEPS = np.array([0.05, 0.1, 0.2, 0.25, 0.5, 1.0]) * 1e-3
-RADII = (1.0, 0.9, 0.8, 0.5)
-SMALL = 0.05
-"""Error up to which little accuracy is lost."""
-SEVERAL = 3.0
-"""Times a step at least that count as several."""
-ELSEWHERE = ((700.0, 150.0), (800.0, 100.0), (700.0, 1000.0))
-"""Other speeds [rpm] and mean torques [Nm]: two at which the springs rattle, one at which they stay closed."""
 
 
 class Run(NamedTuple):
@@ -112,66 +100,3 @@ def e1(trucks: Trucks) -> Finding:
     if equal and not quicker:
         reason = "a stiff integrator is as quick here"
     return Finding(equal and quicker, CONDITION, figures, reason)
-
-
-def errors(motion: LooseMotion, radius: float, guard: bool = False) -> Array:
-    """Error of runs with every step of `STEPS`, contact times as they are unless under the ``guard``."""
-    plan = motion.problem.plan
-    state = begin(plan, motion.start.angle, motion.start.speed)
-    settings, method, told = Settings(guard=guard, production=np.inf), AlphaMethod.chung_hulbert(radius), []
-    for step in STEPS:
-        stride = round(SAMPLING / step)
-        found = march(plan, method, float(step), round(SPAN / step), state, stride=stride, settings=settings)
-        error = motion.error(motion.twist(found.records.q))
-        told.append(error if np.isfinite(error) else np.inf)
-    return np.array(told)
-
-
-def largest(errors: Array) -> float:
-    """The largest step [s] up to which all errors are small; 0 without one.
-
-    >>> largest(np.array([1e-3, 2e-3, 0.1, 1e-3, 1e-3, 1e-3])), largest(np.full(6, 1.0))
-    (0.0001, 0.0)
-    """
-    good = int(np.argmin(np.append(errors <= SMALL, False)))
-    return float(STEPS[good - 1]) if good else 0.0
-
-
-def growth(table: dict[float, Array]) -> float:
-    """How much longer than with radius 1 the step may be with the best radius below."""
-    plain = largest(table[1.0])
-    return max(largest(table[radius]) for radius in RADII[1:]) / plain if plain else float("nan")
-
-
-@claim(
-    "E2",
-    "6.1",
-    "With numerical damping the time step can grow several times with little loss of accuracy.",
-    "error over steps of 0.05 to 1 ms with spectral radius 1 and below, contact times as they are: the largest step up "
-    "to which the error stays within 5 % is at least three times as long with some radius below 1 as with 1, and at "
-    "the smallest step their errors are alike (within 10 %)",
-)
-def e2(trucks: Trucks) -> Finding:
-    motion = LooseMotion(trucks.dmf)
-    table = {radius: errors(motion, radius) for radius in RADII}
-    limits = {radius: largest(found) for radius, found in table.items()}
-    best = max(RADII[1:], key=lambda radius: limits[radius])
-    guarded, weak = errors(motion, 1.0, guard=True), list[str]()
-    figures: dict[str, Figure] = {"steps [ms]": floats(1e3 * STEPS)}
-    figures |= {f"error, spectral radius {radius:g} [%]": floats(100 * found) for radius, found in table.items()}
-    figures |= {f"largest step, spectral radius {radius:g} [ms]": 1e3 * step for radius, step in limits.items()}
-    figures["error, spectral radius 1, contact times of at least half a step [%]"] = floats(100 * guarded)
-    figures["gain [-]"] = gain = growth(table)
-    for rpm, torque in ELSEWHERE:
-        other = LooseMotion(trucks.dmf, rpm * RPM, torque)
-        found = growth({radius: errors(other, radius) for radius in RADII})
-        figures[f"gain at {rpm:g} rpm, {torque:g} Nm [-]"] = found
-        if not found >= SEVERAL:
-            weak.append(f"{rpm:g} rpm, {torque:g} Nm")
-    alike = abs(table[best][0] / table[1.0][0] - 1) < 0.1
-    reasons = [] if gain >= SEVERAL else ["the step grows by less than three times"]
-    reasons += [] if alike else ["small steps are not alike"]
-    reasons += [f"elsewhere it grows by less than three times: {'; '.join(weak)}"] if weak else []
-    reason = ", ".join(reasons)
-    plain = {f"error_{round(100 * radius)}": (found, "ratio") for radius, found in table.items()}
-    return Finding(gain >= SEVERAL and alike, CONDITION, figures, reason, sweep("E2", "step", STEPS, "time", **plain))
