@@ -103,5 +103,7 @@ def _twist(place: Rattle, step: float) -> np.ndarray:
     motion = place.motion
     state = begin(motion.problem.plan, motion.start.angle, motion.start.speed)
     stride, count, settings = round(1e-3 / step), round(2.0 / step), Settings(guard=False, production=np.inf)
-    run = march(motion.problem.plan, AlphaMethod.chung_hulbert(1.0), step, count, state, stride=stride, settings=settings)
+    run = march(
+        motion.problem.plan, AlphaMethod.chung_hulbert(1.0), step, count, state, stride=stride, settings=settings
+    )
     return motion.twist(run.records.q)[-1000:]

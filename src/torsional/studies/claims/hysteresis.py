@@ -1,4 +1,4 @@
-"""Claims about the friction of arc springs (F3, F4): loops under a slow sweep at several rotational speeds."""
+"""The claim about the friction of arc springs over rotational speed (F3), by loops under a slow sweep."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis, model_hysteresis
-from torsional.studies.claims.answers import floats, mean_torque, rising
+from torsional.studies.claims.answers import floats, rising
 from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, hinged
+from torsional.studies.claims.trucks import Trucks
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -22,12 +22,6 @@ SPEEDS = np.array([0.0, 2000.0, 4000.0]) * RPM
 LONG_SWEEPS = np.radians([2.0, 5.0, 20.0, 60.0])
 TRUCK_SWEEPS = np.radians([1.0, 2.0, 5.0, 13.0])
 """Up to just before the truck's end stop."""
-START_SPEEDS = np.array([100.0, 200.0, 300.0]) * RPM
-START_SWEEP = np.radians([10.0])
-DRIVING_SPEEDS = np.array([1000.0, 1400.0, 1800.0]) * RPM
-DRIVING_SWEEPS = np.radians([0.2, 0.5, 1.0])
-PARTLY = 4.0 / (3.0 * np.pi)
-"""Loss factor of a long row of springs on dry ground that slides in part: torque grows with the root of the angle."""
 
 CONDITION = (
     "3°/s from rest until the loop closes, no inertia; sections are pressed by rotation and by the springs' curvature; "
@@ -58,9 +52,9 @@ def long_arcs() -> System:
     return assemble(Powertrain(arc_spring_flywheel(design).components))
 
 
-def truck_loops(model: Model, speed: Array = SPEEDS, sweep: Array = TRUCK_SWEEPS, centre: float = 0.0) -> xr.Dataset:
+def truck_loops(model: Model, speed: Array = SPEEDS, sweep: Array = TRUCK_SWEEPS) -> xr.Dataset:
     """Loops of the truck's absorber."""
-    return model_hysteresis(model, speed, sweep, centre=centre)
+    return model_hysteresis(model, speed, sweep)
 
 
 def long_loops(speed: Array = SPEEDS, sweep: Array = LONG_SWEEPS) -> xr.Dataset:
@@ -111,55 +105,3 @@ def f3(trucks: Trucks) -> Finding:
         good &= rising(loops.loss.values[:, -1]) and rising(loops.stiffness.values[:, -1]) and stuck(loops)
     figures = {**told("truck", truck), **told("long arcs", long)}
     return Finding(good, CONDITION, figures, dataset=long[["loss", "stiffness", "loss_factor", "sliding"]])
-
-
-def driving_angle(model: Model) -> float:
-    """The angle [rad] at which the springs without friction carry the mean torque of comparisons."""
-    law = hinged(model, model.landmarks.springs[0])
-    angle = np.linspace(0.0, max(law.stops), 20_001)
-    return float(np.interp(mean_torque(model), law.torque(angle), angle))
-
-
-@claim(
-    "F4",
-    "3.1",
-    "At start-up, with large angles at low speed, an arc-spring flywheel has much damping and little stiffness; in "
-    "normal driving its losses are small.",
-    "chord stiffness lower, and loss per cycle and loss factor higher, at ±10° about no torque at 100–300 rpm than at "
-    "±0.2° to ±1° about the mean torque at 1000–1800 rpm, for every pair of the two",
-)
-def f4(trucks: Trucks) -> Finding:
-    model = trucks.arc_spring
-    start = truck_loops(model, START_SPEEDS, START_SWEEP)
-    driving = truck_loops(model, DRIVING_SPEEDS, DRIVING_SWEEPS, driving_angle(model))
-    softer = float(start.stiffness.max()) < float(driving.stiffness.min())
-    more = float(start.loss.min()) > float(driving.loss.max())
-    damped = float(start.loss_factor.min()) > float(driving.loss_factor.max())
-    figures: dict[str, Figure] = {
-        "start-up: stiffness [kNm/rad]": floats(start.stiffness / 1e3),
-        "driving: stiffness [kNm/rad]": floats(driving.stiffness / 1e3),
-        "start-up: loss per cycle [J]": floats(start.loss),
-        "driving: loss per cycle [J]": floats(driving.loss),
-        "start-up: loss factor [-]": floats(start.loss_factor),
-        "driving: loss factor [-]": floats(driving.loss_factor),
-        "driving: sliding sections": floats(driving.sliding),
-        "a long row that slides in part: loss factor [-]": float(PARTLY),
-    }
-    about = f"{np.degrees(driving_angle(model)):.3g}° (60 % of the peak torque)"
-    sweeps = _listed(np.degrees(DRIVING_SWEEPS))
-    where = f"start-up ±10° at {_listed(START_SPEEDS / RPM)} rpm; driving ±{sweeps}° about {about} at "
-    where += f"{_listed(DRIVING_SPEEDS / RPM)} rpm"
-    reason = "" if softer and more and damped else _reason(softer, more, damped)
-    return Finding(softer and more and damped, f"3°/s, no inertia; {where}", figures, reason)
-
-
-def _reason(softer: bool, more: bool, damped: bool) -> str:
-    held = [text for good, text in ((softer, "softer"), (more, "losing more energy a cycle")) if good]
-    kept = f"at start-up it is {' and '.join(held)}, as claimed" if held else "at start-up it is not softer"
-    if damped:
-        return kept
-    return (
-        f"{kept}; but over the energy stored it loses less than in driving: where the angle is small only the first "
-        "sections slide, and such a row has a loss factor near 4/(3π) whatever its amplitude, while at start-up all "
-        "sections slide under little load from rotation"
-    )

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from torsional.model import RPM, Model
+from torsional.model import Model
+from torsional.units import RPM
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
 from torsional.numerics.explicit_march import explicit_march
