@@ -11,7 +11,6 @@ import xarray as xr
 from torsional.files import changed
 from torsional.files.scenario import load_scenario
 from torsional.model import Model
-from torsional.units import RPM
 from torsional.numerics.arrays import Array
 from torsional.solvers.hysteresis import absorber_ends, hysteresis, model_hysteresis
 from torsional.solvers.transient import transient
@@ -22,6 +21,7 @@ from torsional.studies.claims.trucks import Trucks
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.running import run_plan
 from torsional.system import assemble
+from torsional.units import RPM
 
 START_SPEEDS, START_SWEEP = (100.0, 200.0, 300.0), np.radians(10.0)
 """Of starts [rpm], [rad]: the largest angle is bounded by the stop at 13.75°."""

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from torsional.absorbers.straight_spring import StraightSprings
 from torsional.model import Model
-from torsional.units import RPM
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
 from torsional.numerics.explicit_march import explicit_march
@@ -18,6 +18,7 @@ from torsional.studies.claims.answers import floats, main_order, sweep
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.loose_springs import DESIGN, SAMPLING, LooseMotion
 from torsional.studies.claims.trucks import Trucks
+from torsional.units import RPM
 
 STEPS = np.array([0.05, 0.1, 0.2, 0.25, 0.5, 1.0]) * 1e-3
 RADII = (1.0, 0.8, 0.5, 0.0)
@@ -49,8 +50,8 @@ class Rattle:
     Rattling springs part trajectories that differ by rounding alone; RMS and orders stay.
     """
 
-    def __init__(self, model: Model, rpm: float, torque: float, **design: float | tuple[float, ...]) -> None:
-        self.motion = LooseMotion(model, rpm * RPM, torque, dataclasses.replace(DESIGN, **design))  # type: ignore[arg-type]
+    def __init__(self, model: Model, rpm: float, torque: float, design: StraightSprings = DESIGN) -> None:
+        self.motion = LooseMotion(model, rpm * RPM, torque, design)
         start, equations = self.motion.start, self.motion.problem.equations
         times = np.linspace(0.0, LASTING, round(LASTING / SAMPLING) + 1)
         self.exact = self.told(explicit_march(equations, times, start.angle, start.speed, tolerance=TOLERANCE).angles)
@@ -98,11 +99,11 @@ def growth(table: Mapping[float, Array]) -> float:
     return best / plain if plain else float("nan")
 
 
-VARIED: dict[str, dict[str, float | tuple[float, ...]]] = {
-    "grease a third": {"grease_damping": DESIGN.grease_damping / 3},
-    "grease three times": {"grease_damping": DESIGN.grease_damping * 3},
-    "play half": {"play_factors": tuple(0.5 * factor for factor in DESIGN.play_factors)},
-    "play twice": {"play_factors": tuple(2.0 * factor for factor in DESIGN.play_factors)},
+VARIED = {
+    "grease a third": dataclasses.replace(DESIGN, grease_damping=DESIGN.grease_damping / 3),
+    "grease three times": dataclasses.replace(DESIGN, grease_damping=DESIGN.grease_damping * 3),
+    "play half": dataclasses.replace(DESIGN, play_factors=tuple(0.5 * factor for factor in DESIGN.play_factors)),
+    "play twice": dataclasses.replace(DESIGN, play_factors=tuple(2.0 * factor for factor in DESIGN.play_factors)),
 }
 """What is uncertain of the design, at the second of the operating points."""
 
@@ -155,7 +156,7 @@ def told(at: str, table: Mapping[float, Array]) -> dict[str, Figure]:
 def closed_and_varied(model: Model) -> dict[str, Figure]:
     """Gains where the springs stay closed, and with other designs."""
     places = {f"at {CLOSED[0]:g} rpm, {CLOSED[1]:g} Nm, springs closed": Rattle(model, *CLOSED)}
-    places |= {name: Rattle(model, *MIDDLE, **design) for name, design in VARIED.items()}
+    places |= {name: Rattle(model, *MIDDLE, design) for name, design in VARIED.items()}
     gains = {name: growth({radius: place.errors(radius) for radius in (1.0, 0.5)}) for name, place in places.items()}
     return {f"gain, {name} [-]": gain for name, gain in gains.items()}
 
