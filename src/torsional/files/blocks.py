@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from torsional import absorbers
 from torsional.absorbers import Absorber
 from torsional.components import Component, GearPair, Inertia, Shaft, Vehicle
 from torsional.components import blocks as groups
 from torsional.errors import ModelError
-from torsional.files.parts import component, pendulum, switch
 from torsional.files.schema import ModelFile
-from torsional.files.schema import absorber as schema
 from torsional.files.schema.fields import fitting
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox
-from torsional.files.schema.springs import Friction
-from torsional.files.spring_flywheels import arc_springs, straight_springs
+from torsional.files.schema.making import Making
 from torsional.model import Gear, Landmarks
 
 Parts = dict[str, Component]
@@ -55,7 +51,7 @@ class Machine:
 def machine(file: ModelFile, throws: int | None) -> Machine:
     """All blocks as one machine; ``throws`` is the engine's number, None without an engine."""
     built = Machine()
-    concept = absorber(file.absorber) if file.absorber else None
+    concept: Absorber | None = _made(file.absorber, "absorber") if file.absorber else None
     if concept:
         _engine_side(built, file.crankshaft, concept, throws)
         built.add(concept.components, "absorber")
@@ -72,7 +68,7 @@ def machine(file: ModelFile, throws: int | None) -> Machine:
         built.add(_driveline(file.driveline, vehicle), "driveline")
         built.mark(load="vehicle")
     for name, part in file.components.items():
-        built.add({name: component(part, f"components.{name}")}, f"components.{name}")
+        built.add({name: _made(part, f"components.{name}")}, f"components.{name}")
     _listed_gears(built, file)
     return built
 
@@ -127,72 +123,12 @@ def _crankshaft(block: Crankshaft, flange: str, count: int) -> Parts:
     return {**front, **rear}
 
 
-def absorber(block: schema.AbsorberBlock) -> Absorber:
-    """The absorber of a block, with its pendulum; ModelError names the key path."""
+def _made(block: Making, path: str) -> Any:
+    """What a block makes; ModelError names the key path."""
     try:
-        concept = _CONCEPTS[type(block)](block)
-        washer = block.washer() if isinstance(block, Friction) else None
-        concept = absorbers.with_friction(concept, washer) if washer else concept
-        return _hung(concept, block.pendulum) if block.pendulum else concept
+        return block.made()
     except ModelError as error:
-        raise error.located(prefix="absorber") from None
-
-
-def _dual_mass(b: schema.DualMassFlywheel) -> Absorber:
-    return absorbers.dual_mass_flywheel(b.primary_inertia, b.secondary_inertia, b.law(), b.damping)
-
-
-def _planetary(b: schema.PlanetaryDualMassFlywheel) -> Absorber:
-    return absorbers.planetary_dual_mass_flywheel(
-        b.primary_inertia,
-        b.secondary_inertia,
-        b.planet_inertia,
-        b.law(),
-        planet_ratio=b.planet_ratio,
-        damping=b.damping,
-        switch=switch(b.switch) if b.switch else None,
-    )
-
-
-def _power_split(b: schema.PowerSplit) -> Absorber:
-    return absorbers.power_split_absorber(
-        b.primary_inertia,
-        b.secondary_inertia,
-        b.planet_inertia,
-        b.output_inertia,
-        b.law(),
-        planet_ratio=b.planet_ratio,
-        gear_quotient=b.gear_quotient,
-        damping=b.damping,
-    )
-
-
-def _tuned(b: schema.TunedDualMassFlywheel) -> Absorber:
-    ring, both = b.tva, [row.law() for row in (b.primary_springs, b.secondary_springs) if row]
-    stiffness = ring.stiffness or absorbers.tuned_stiffness(ring.inertia, (ring.tuned_to or 0.0) * (ring.order or 0.0))
-    tva = {"tva_inertia": ring.inertia, "tva_stiffness": stiffness, "tva_damping": ring.damping}
-    if b.flange_inertia is None:
-        return absorbers.tuned_secondary_flywheel(
-            b.primary_inertia, b.secondary_inertia, b.law(), damping=b.damping, **tva
-        )
-    return absorbers.tuned_flange_flywheel(
-        b.primary_inertia, b.flange_inertia, b.secondary_inertia, both[0], both[1], damping=b.damping, **tva
-    )
-
-
-_CONCEPTS: dict[type[schema.AbsorberBlock], Callable[..., Absorber]] = {
-    schema.SingleMassFlywheel: lambda b: absorbers.single_mass_flywheel(b.inertia),
-    schema.DualMassFlywheel: _dual_mass,
-    schema.TunedDualMassFlywheel: _tuned,
-    schema.PowerSplit: _power_split,
-    schema.PlanetaryDualMassFlywheel: _planetary,
-    schema.StraightSpringFlywheel: lambda b: absorbers.condensed(straight_springs(b)),
-    schema.ArcSpringFlywheel: lambda b: absorbers.condensed(arc_springs(b)),
-}
-
-
-def _hung(concept: Absorber, block: schema.PendulumBlock) -> Absorber:
-    return absorbers.with_pendulum(concept, pendulum(block, block.carrier or concept.output))
+        raise error.located(prefix=path) from None
 
 
 def _clutch(block: Clutch, flywheel: str) -> Parts:
@@ -249,6 +185,6 @@ def _listed_gears(built: Machine, file: ModelFile) -> None:
         for name, part in block.components.items():
             path = f"gears.{gear}.components.{name}"
             built.refuse_taken(name, path)
-            parts[name] = component(part, path)
+            parts[name] = _made(part, path)
             built.origin.setdefault(name, path)
         built.gears[gear] = Gear(block.ratio, parts)

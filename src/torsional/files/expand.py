@@ -4,44 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_args
 
-from torsional.absorbers import CentrifugalPendulum
 from torsional.arguments import checked
-from torsional.components import (
-    Component,
-    Coupling,
-    Damper,
-    DistributedShaft,
-    GearPair,
-    Inertia,
-    PlanetaryGear,
-    PlanetSpin,
-    Shaft,
-    Superposition,
-    Tyre,
-    Vehicle,
-)
+from torsional.components import Component, Coupling
 from torsional.errors import ModelError
 from torsional.files.schema.document import VERSION
+from torsional.files.schema.making import kinds
+from torsional.files.schema.parts import PartBlock
 from torsional.laws import Hinges, Jenkins
 from torsional.model import Gear, Model
 from torsional.stamps import SpeedSwitch
 
-_TYPES: dict[type, str] = {
-    CentrifugalPendulum: "centrifugal_pendulum",
-    Coupling: "coupling",
-    Damper: "damper",
-    DistributedShaft: "distributed_shaft",
-    GearPair: "gear_pair",
-    Inertia: "inertia",
-    PlanetSpin: "planet_spin",
-    PlanetaryGear: "planetary_gear",
-    Shaft: "shaft",
-    Superposition: "superposition",
-    Tyre: "tyre",
-    Vehicle: "vehicle",
-}
+_TYPES: dict[Any, str] = {}
+for _kind in kinds(PartBlock):  # of two for one component the first is the plain one
+    _TYPES.setdefault(_kind.makes, get_args(_kind.model_fields["type"].annotation)[0])
 
 
 @checked

@@ -10,9 +10,8 @@ from torsional.errors import ModelError
 from torsional.files.load import validated
 from torsional.files.reader import Tree
 from torsional.files.schema import ModelFile
-from torsional.files.schema.absorber import AbsorberBlock, PowerSplit, SpringFlywheelFields
 from torsional.files.schema.fields import Quantity, quantity_of
-from torsional.files.schema.springs import Spring
+from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.units import plausible, show
 
@@ -48,22 +47,19 @@ def _below_full_load(file: ModelFile, model: Model) -> list[str]:
     """A stop that full load reaches: steady running on the stop is no one's intention."""
     if model.engine is None or model.engine.full_load is None:
         return []
-    stop = _stop_torque(file.absorber, model)
-    share = file.absorber.gear_quotient if isinstance(file.absorber, PowerSplit) else 1.0
-    if stop is None or stop > share * model.full_load_peak():
+    stop = _stop_torque(model)
+    if file.absorber is None or stop is None or stop > file.absorber.spring_share() * model.full_load_peak():
         return []
     peak = show(model.full_load_peak(), "torque")
     return [f"absorber: the springs meet their stop at {show(stop, 'torque')}, and full load is {peak}"]
 
 
-def _stop_torque(block: AbsorberBlock | None, model: Model) -> float | None:
-    """The torque [Nm] at which an absorber of one row of springs meets its stop; None without one."""
-    if isinstance(block, SpringFlywheelFields):
-        springs: Any = model.components[model.landmarks.springs[0]]
-        return float(springs.law.torque(max(springs.law.stops)))
-    if not isinstance(block, Spring) or block.stop_stiffness is None:
+def _stop_torque(model: Model) -> float | None:
+    """The torque [Nm] at which an absorber of one row of springs meets its stop on drive; None without one."""
+    laws = [getattr(model.components[name], "law", None) for name in model.landmarks.springs]
+    if len(laws) != 1 or not isinstance(laws[0], Hinges) or not laws[0].stops:
         return None
-    return block.stages[-1].up_to if block.stages else block.stop_torque
+    return float(laws[0].torque(max(laws[0].stops)))
 
 
 def _of_block(block: BaseModel, path: str) -> list[str]:

@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema
 
 from torsional import units
 from torsional.errors import ModelError
-from torsional.files.schema.absorber import Absorber
+from torsional.files.schema.absorbers import AnyAbsorber
 from torsional.files.schema.engine import EngineBlock
 from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Speed
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox, VehicleBlock
@@ -87,7 +87,7 @@ class ModelFile(Block):
     description: Annotated[str, Field(max_length=4000)] = ""
     engine: EngineBlock | None = None
     crankshaft: Crankshaft | None = None
-    absorber: Absorber | None = None
+    absorber: AnyAbsorber | None = None
     clutch: Clutch | None = None
     gearbox: Gearbox | None = None
     driveline: Driveline | None = None

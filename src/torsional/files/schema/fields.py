@@ -7,7 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
@@ -101,6 +109,10 @@ Speed = Annotated[float, Quantity("speed", above=0)]
 Stiffness = Annotated[float, Quantity("stiffness", above=0)]
 Torque = Annotated[float, Quantity("torque", above=0)]
 Number = Annotated[float, Quantity("number")]
+Order = Annotated[float, Quantity("engine_order", above=0)]
+SpringRate = Annotated[float, Quantity("spring_rate", above=0)]
+Time = Annotated[float, Quantity("time", least=0)]
+Whole = Annotated[int, Field(ge=1, le=100)]
 Dampings = Annotated[float | list[float], Quantity("damping", least=0, shape="one or list")]
 Inertias = Annotated[float | list[float], Quantity("inertia", above=0, shape="one or list")]
 Stiffnesses = Annotated[float | list[float], Quantity("stiffness", above=0, shape="one or list")]

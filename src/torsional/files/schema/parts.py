@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from torsional import components
 from torsional.errors import ModelError
-from torsional.files.schema.absorber import PendulumFields, SwitchBlock
+from torsional.files.schema.attached import PendulumFields, SwitchBlock
 from torsional.files.schema.fields import (
     Block,
     Damping,
@@ -22,11 +23,18 @@ from torsional.files.schema.fields import (
     Ratio,
     Stiffness,
 )
+from torsional.files.schema.making import Making, choice
 from torsional.files.schema.springs import Spring, check_spring, washer
 from torsional.laws import Hinges, Jenkins
 
 
-class Between(Block):
+class PartBlock(Making):
+    """A component by its type."""
+
+    makes: ClassVar[Any]
+
+
+class Between(PartBlock):
     """What connects node a with node b."""
 
     a: Node
@@ -40,35 +48,51 @@ class Between(Block):
         return self
 
 
-class InertiaPart(Block):
+class InertiaPart(PartBlock):
     """A rigid disc."""
 
+    makes: ClassVar = components.Inertia
     type: Literal["inertia"]
     inertia: Inertia
     node: Node | None = Field(None, description="where it sits; a node of its own name where none is given")
 
 
-class VehiclePart(Block):
+class VehiclePart(PartBlock):
     """A translating mass at the wheel."""
 
+    makes: ClassVar = components.Vehicle
     type: Literal["vehicle"]
     mass: Mass
     rolling_radius: Length
     node: Node | None = None
 
 
-class ShaftPart(Between):
-    """A torsion spring with damping; a tyre is the same by another name."""
+class ElasticPart(Between):
+    """A torsion spring with damping."""
 
-    type: Literal["shaft", "tyre"]
     stiffness: Stiffness
     damping: Damping = 0.0
     loss_factor: LossFactor = 0.0
 
 
-class DamperPart(Block):
+class ShaftPart(ElasticPart):
+    """A torsion spring with damping."""
+
+    makes: ClassVar = components.Shaft
+    type: Literal["shaft"]
+
+
+class TyrePart(ElasticPart):
+    """The same, between wheels and road."""
+
+    makes: ClassVar = components.Tyre
+    type: Literal["tyre"]
+
+
+class DamperPart(PartBlock):
     """A viscous damper, absolute where b is left out."""
 
+    makes: ClassVar = components.Damper
     type: Literal["damper"]
     a: Node
     b: Node = "ground"
@@ -100,6 +124,7 @@ class HingesBlock(Block):
 class CouplingPart(Between, Spring):
     """A connection with stages, lash and stop."""
 
+    makes: ClassVar = components.Coupling
     type: Literal["coupling"]
     damping: Damping = 0.0
     hinges: HingesBlock | None = Field(None, description="the law hinge by hinge, instead of stiffness or stages")
@@ -116,10 +141,15 @@ class CouplingPart(Between, Spring):
         """The law from stages or hinges."""
         return self.hinges.law() if self.hinges else super().law()
 
+    def made(self) -> components.Coupling:
+        """A coupling with this law."""
+        return components.Coupling(self.a, self.b, self.law(), self.damping)
+
 
 class FrictionWasherPart(Between):
     """Dry friction that sticks elastically before it slips."""
 
+    makes: ClassVar = components.Coupling
     type: Literal["friction_washer"]
     friction_torque: Annotated[float, Quantity("torque", above=0)] = Field(description="when it slips")
     friction_stiffness: Stiffness | None = Field(
@@ -131,17 +161,23 @@ class FrictionWasherPart(Between):
         """The washer's law."""
         return washer(self.friction_torque, self.friction_stiffness)
 
+    def made(self) -> components.Coupling:
+        """A coupling with this law."""
+        return components.Coupling(self.a, self.b, self.law(), self.damping)
+
 
 class GearPairPart(Between):
     """Two meshing gears."""
 
+    makes: ClassVar = components.GearPair
     type: Literal["gear_pair"]
     ratio: Ratio
 
 
-class PlanetaryGearPart(Block):
+class PlanetaryGearPart(PartBlock):
     """An epicyclic set."""
 
+    makes: ClassVar = components.PlanetaryGear
     type: Literal["planetary_gear"]
     sun: Node
     ring: Node
@@ -151,9 +187,10 @@ class PlanetaryGearPart(Block):
     planet_ratio: Ratio = Field(1.0, description="z_sun/z_planet")
 
 
-class SuperpositionPart(Block):
+class SuperpositionPart(PartBlock):
     """A gear train by its ratio alone: θ_node = (1 − r) θ_a + r θ_b."""
 
+    makes: ClassVar = components.Superposition
     type: Literal["superposition"]
     node: Node
     a: Node
@@ -164,6 +201,7 @@ class SuperpositionPart(Block):
 class PlanetSpinPart(Between):
     """Planet wheels that turn with (1 − g) θ_a + g θ_b."""
 
+    makes: ClassVar = components.PlanetSpin
     type: Literal["planet_spin"]
     ratio: Number
     inertia: InertiaOrNone
@@ -173,6 +211,7 @@ class PlanetSpinPart(Between):
 class DistributedShaftPart(Between):
     """A uniform shaft in finite elements."""
 
+    makes: ClassVar = components.DistributedShaft
     type: Literal["distributed_shaft"]
     length: Length
     outer_diameter: Length
@@ -183,25 +222,14 @@ class DistributedShaftPart(Between):
     loss_factor: LossFactor = 0.0
 
 
-class PendulumPart(PendulumFields):
+class PendulumPart(PendulumFields, PartBlock):
     """A centrifugal pendulum; its node has the component's name."""
 
     type: Literal["centrifugal_pendulum"]
     carrier: Node
 
 
-Part = Annotated[
-    InertiaPart
-    | VehiclePart
-    | ShaftPart
-    | DamperPart
-    | CouplingPart
-    | FrictionWasherPart
-    | GearPairPart
-    | PlanetaryGearPart
-    | SuperpositionPart
-    | PlanetSpinPart
-    | DistributedShaftPart
-    | PendulumPart,
-    Field(discriminator="type"),
-]
+if TYPE_CHECKING:
+    Part = PartBlock
+else:
+    Part = choice(PartBlock)
