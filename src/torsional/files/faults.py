@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, get_args
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -99,11 +99,11 @@ def _listed(expected: object) -> str:
 
 
 def _tags(path: str) -> list[str]:
-    from torsional.files.schema import absorber, parts
+    from torsional.files.schema.absorbers import AbsorberBlock
+    from torsional.files.schema.making import tags
+    from torsional.files.schema.parts import PartBlock
 
-    union = absorber.Absorber if path == "absorber" else parts.Part
-    members = get_args(get_args(union)[0])
-    return [tag for member in members for tag in get_args(member.model_fields["type"].annotation)]
+    return tags(AbsorberBlock if path == "absorber" else PartBlock)
 
 
 def _path(location: Sequence[int | str], data: Any) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, TypeVar, Union, cast
+from typing import Annotated, Any, ClassVar, TypeVar, Union, cast, get_args
 
 from pydantic import Field
 
@@ -17,6 +17,8 @@ class Making(Block):
     """A block that stands for one thing; its keys are what ``makes`` is called with, unless it says otherwise."""
 
     makes: ClassVar[Callable[..., Any]]
+    apart: ClassVar[tuple[str, ...]] = ("type",)
+    """Keys that are not handed over."""
 
     def made(self) -> Any:
         """The thing itself; ModelError, with the key path from this block on, where it cannot be."""
@@ -24,7 +26,7 @@ class Making(Block):
 
     def values(self) -> dict[str, Any]:
         """The keys that are given: blocks as what they make, lists as tuples."""
-        own = {key: getattr(self, key) for key in type(self).model_fields if key != "type"}
+        own = {key: getattr(self, key) for key in type(self).model_fields if key not in self.apart}
         return {key: _value(key, value) for key, value in own.items() if value is not None}
 
 
@@ -46,3 +48,8 @@ def kinds(base: type[Kind]) -> list[type[Kind]]:
     """All blocks derived from ``base`` that have a type of their own."""
     own = [base] if "type" in base.model_fields else []
     return own + [leaf for kind in base.__subclasses__() for leaf in kinds(kind)]
+
+
+def tags(base: type[Block]) -> list[str]:
+    """The types that a file may name."""
+    return [tag for kind in kinds(base) for tag in get_args(kind.model_fields["type"].annotation)]

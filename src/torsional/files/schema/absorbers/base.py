@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import ClassVar
 
 from pydantic import Field
 
@@ -17,9 +17,7 @@ class AbsorberBlock(Making):
 
     pendulum: PendulumBlock | None = Field(None, description="centrifugal pendulum on one of the bodies")
 
-    def values(self) -> dict[str, Any]:
-        """The concept's own keys."""
-        return {key: value for key, value in super().values().items() if key != "pendulum"}
+    apart: ClassVar = ("type", "pendulum")
 
     def made(self) -> Absorber:
         """The absorber with its friction and its pendulum."""
