@@ -520,9 +520,9 @@ MACHINE = [
         "type: shaft, ",
         "",
         (
-            "components.shaft (line 5): the key 'type' is missing; allowed: inertia, vehicle, shaft, tyre, "
-            "damper, coupling, friction_washer, gear_pair, planetary_gear, superposition, planet_spin, "
-            "distributed_shaft, centrifugal_pendulum"
+            "components.shaft (line 5): the key 'type' is missing; allowed: "
+            "centrifugal_pendulum, coupling, damper, distributed_shaft, friction_washer, gear_pair, inertia, "
+            "planet_spin, planetary_gear, shaft, superposition, tyre, vehicle"
         ),
     ),
     (

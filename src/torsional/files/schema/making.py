@@ -51,5 +51,5 @@ def kinds(base: type[Kind]) -> list[type[Kind]]:
 
 
 def tags(base: type[Block]) -> list[str]:
-    """The types that a file may name."""
-    return [tag for kind in kinds(base) for tag in get_args(kind.model_fields["type"].annotation)]
+    """The types that a file may name, in the order of the alphabet."""
+    return sorted(tag for kind in kinds(base) for tag in get_args(kind.model_fields["type"].annotation))
