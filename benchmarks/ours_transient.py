@@ -103,7 +103,7 @@ def floor(step: float, span: float) -> Floor:
     pairs = {(a, b) for a, b, *_ in dmf_lcp.LINEAR} | set(zip(dmf_lcp.PLUS, dmf_lcp.MINUS, strict=True))
     joined = {frozenset((int(a), int(b))) for a, b in pairs}
     tape = tape_of([set(pair) for pair in joined], NODES)
-    couplings, updates, edges, hinges = tape.column.size, tape.target.size, len(joined), dmf_lcp.PLUS.size
+    couplings, updates, edges, hinges = tape.couplings.shape[1], tape.updates.shape[1], len(joined), dmf_lcp.PLUS.size
     once = 4 * couplings + NODES + 12 * edges + 4 * hinges + 6 * NODES
     factor = 2 * updates + couplings + NODES + 4 * edges
     each = 1.15 * once + 0.15 * factor + 25 * NODES + 8 * edges

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from torsional.laws.lugre import LOAD
-from torsional.numerics.sources import packed_levels, packed_profiles
+from torsional.numerics.packed import packed_levels, packed_profiles
 from torsional.numerics.stepping_data import Connected, Driven, Equations, Governed, rows_of
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from torsional.laws import Law
-from torsional.numerics.sources import packed_levels, packed_profiles
+from torsional.numerics.packed import packed_levels, packed_profiles
 from torsional.numerics.stepping_data import Connected, Driven, Equations, Governed, Rows, rows_of
 
 Hinge = tuple[float, float, float, float]  # gap, side, change, contact time

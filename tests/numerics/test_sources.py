@@ -9,18 +9,17 @@ from scipy.interpolate import CubicSpline
 
 from torsional.engine import SliderCrank
 from torsional.errors import ModelError
+from torsional.numerics.packed import packed_levels, packed_profiles, periodic_profile
 from torsional.numerics.sources import (
     crank_terms,
     frame_at,
     govern,
     level_at,
-    packed_levels,
-    packed_profiles,
-    periodic_profile,
     source_slopes,
     source_torques,
 )
 from torsional.numerics.stepping_data import Driven, Governed, rows_of
+from torsional.numerics.stepping_tables import Outside, tables_of
 
 TWO_PI = 2.0 * np.pi
 NONE = np.zeros(0)
@@ -54,15 +53,23 @@ def driven(
     )
 
 
+def outside(source: Driven, governor: Governed | None = None) -> Outside:
+    """The tables of sources and governors in a frame that stands."""
+    nobody = rows_of(np.zeros((0, 1)))
+    none = Governed(nobody, nobody, ints([]), NONE, NONE, NONE, NONE, ints([0]), ints([]))
+    return tables_of(source, governor or none, rows_of(np.ones((1, 1))), np.inf, (np.zeros(1), np.zeros(1)))
+
+
 # --- levels and the frame --------------------------------------------------------------------------------------------
 
 
 def test_a_level_is_linear_between_knots_constant_beyond_and_may_jump() -> None:
     start, time, value = packed_levels([(0.0, 7.0), ([1.0, 2.0, 2.0, 4.0], [0.0, 10.0, -4.0, 0.0])])
     times = [0.0, 1.0, 1.25, 2.0 - 1e-12, 2.0, 3.0, 4.0, 9.0]
-    found = [level_at(start, time, value, 1, t) for t in times]
+    knots = np.array([time, value])
+    found = [level_at(start, knots, 1, t) for t in times]
     np.testing.assert_allclose(found, [0.0, 0.0, 2.5, 10.0, -4.0, -2.0, 0.0, 0.0], atol=1e-10)
-    assert [level_at(start, time, value, p, 3.3) for p in (0, -1)] == [7.0, 1.0]
+    assert [level_at(start, knots, p, 3.3) for p in (0, -1)] == [7.0, 1.0]
     with pytest.raises(ModelError, match="rising times"):
         packed_levels([([1.0, 0.0], [0.0, 0.0])])
 
@@ -71,16 +78,17 @@ def test_a_level_is_linear_between_knots_constant_beyond_and_may_jump() -> None:
 def test_the_frames_angle_is_the_integral_of_its_speed(first: float) -> None:
     """Against quadrature, before the first knot, within and beyond the last."""
     time, value = first + np.array([0.0, 0.5, 0.5, 3.0]), np.array([10.0, 30.0, 20.0, -5.0])
+    knots = np.array([time, value])
     for t in (-4.0, 0.0, 0.3, 1.2, 2.9, 7.0):
-        speed, angle = frame_at(time, value, t)
+        speed, angle = frame_at(knots, 0, t)
         assert speed == pytest.approx(np.interp(t, time, value), rel=1e-14)
-        expected = quad(lambda s: frame_at(time, value, s)[0], 0.0, t, points=sorted(time), limit=200)[0]
+        expected = quad(lambda s: frame_at(knots, 0, s)[0], 0.0, t, points=sorted(time), limit=200)[0]
         assert angle == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
 def test_the_frames_angle_keeps_its_digits() -> None:
-    assert frame_at(np.zeros(1), np.array([150.0]), 1e4) == (150.0, 1.5e6)
-    assert frame_at(np.array([0.0, 10.0]), np.array([0.0, 200.0]), 10.0) == (200.0, 1000.0)
+    assert frame_at(np.array([[0.0], [150.0]]), 0, 1e4) == (150.0, 1.5e6)
+    assert frame_at(np.array([[7.0, 0.0, 10.0], [9.0, 0.0, 200.0]]), 1, 10.0) == (200.0, 1000.0)
 
 
 # --- profiles --------------------------------------------------------------------------------------------------------
@@ -99,8 +107,8 @@ def test_profiles_converge_with_the_fourth_power() -> None:
     miss = []
     for count in (36, 72):
         samples = np.exp(np.sin(TWO_PI * np.arange(count) / count))
-        source = driven([[1.0]], levels=[], profiles=[(samples, 2.0)], level_of=[-1], profile_of=[0],
-                        multiple=[1.0], phase=[0.0], feedback=[0.0])  # fmt: skip
+        source = outside(driven([[1.0]], levels=[], profiles=[(samples, 2.0)], level_of=[-1], profile_of=[0],
+                        multiple=[1.0], phase=[0.0], feedback=[0.0]))  # fmt: skip
         angles, out = np.linspace(-30.0, 30.0, 999), np.zeros(1)
         found = np.empty(angles.size)
         for i, angle in enumerate(angles):
@@ -137,7 +145,7 @@ def two_sources() -> Driven:
 def test_torque_follows_time_angle_and_the_parts_own_motion() -> None:
     q, extra, out = np.array([0.11, 5.0]), np.array([8.0, 0.5]), np.zeros(2)
     for t, frame in ((0.4, 3.0), (1.9, 1234.5)):
-        source_torques(two_sources(), t, frame, q, extra, out)
+        source_torques(outside(two_sources()), t, frame, q, extra, out)
         angle = 2.0 * frame + 2.0 * q[0] + 0.3
         assert out[0] == pytest.approx((50.0 * t + 8.0) * np.cos(1.5 * angle), abs=3e-8)
         assert out[1] == -29.5
@@ -146,9 +154,9 @@ def test_torque_follows_time_angle_and_the_parts_own_motion() -> None:
 def test_slopes_are_the_derivative_by_the_rows_product() -> None:
     q, extra = np.array([0.11, 5.0]), np.zeros(2)
     high, low, slope = np.zeros(2), np.zeros(2), np.zeros(2)
-    source_slopes(two_sources(), 1.0, 3.0, q, extra, slope)
+    source_slopes(outside(two_sources()), 1.0, 3.0, q, extra, slope)
     for shift, out in ((1e-5, high), (-1e-5, low)):
-        source_torques(two_sources(), 1.0, 3.0, q + shift, extra, out)
+        source_torques(outside(two_sources()), 1.0, 3.0, q + shift, extra, out)
     np.testing.assert_allclose(slope, (high - low) / np.array([2.0 * 2e-5, 2e-5]), rtol=1e-7)
     assert slope[1] == 0.0 and abs(slope[0]) > 1.0
 
@@ -163,7 +171,7 @@ def test_a_crank_follows_lagrange(offset: float) -> None:
                   )  # fmt: skip
     constant, inertia = np.zeros(1), np.zeros(1)
     q, v, acceleration, frame_speed = np.array([0.2]), np.array([7.0]), 900.0, 150.0
-    crank_terms(made, 11.0, frame_speed, q, v, constant, inertia)
+    crank_terms(outside(made), 11.0, frame_speed, q, v, constant, inertia)
     angle, rate = multiple * (11.0 + 0.2) + phase, multiple * (frame_speed + 7.0)
     turned = multiple * acceleration
     expected = float(crank.reciprocating_torque(mass, rate, angle, turned)) + included * turned
@@ -187,17 +195,17 @@ def governor(sources: list[int], *, limit: float = 50.0) -> Governed:
 def test_a_governor_is_proportional_and_integral_and_may_add_to_levels() -> None:
     source, integral, torque, extra = two_sources(), np.zeros(1), np.zeros(1), np.zeros(2)
     for expected in (4.0 * 2.0, 4.0 * 2.0 + 0.2, 4.0 * 2.0 + 0.4):  # level −30, speed −32: an error of 2
-        govern(governor([0]), source, 1.0, 0.01, 100.0, np.array([-132.0, 9.0]), integral, torque, extra)
+        govern(outside(source, governor([0])), 1.0, 0.01, 100.0, np.array([-132.0, 9.0]), integral, torque, extra)
         assert torque[0] == pytest.approx(expected, rel=1e-13)
         assert extra.tolist() == [torque[0], 0.0]
-    govern(governor([]), source, 1.0, 0.0, 100.0, np.array([-132.0, 9.0]), integral, torque, extra)
+    govern(outside(source, governor([])), 1.0, 0.0, 100.0, np.array([-132.0, 9.0]), integral, torque, extra)
     assert extra.tolist() == [0.0, 0.0] and integral[0] == pytest.approx(0.6)
 
 
 def test_a_governor_at_its_limit_does_not_wind_up() -> None:
     source, integral, torque, extra = two_sources(), np.array([20.0]), np.zeros(1), np.zeros(2)
     for _ in range(100):
-        govern(governor([]), source, 1.0, 0.1, 0.0, np.array([-60.0, 0.0]), integral, torque, extra)
+        govern(outside(source, governor([])), 1.0, 0.1, 0.0, np.array([-60.0, 0.0]), integral, torque, extra)
     assert torque[0] == 50.0 and integral[0] == 20.0
-    govern(governor([]), source, 1.0, 0.1, 0.0, np.array([-29.0, 0.0]), integral, torque, extra)
+    govern(outside(source, governor([])), 1.0, 0.1, 0.0, np.array([-29.0, 0.0]), integral, torque, extra)
     assert torque[0] == pytest.approx(16.0) and integral[0] == pytest.approx(19.0)

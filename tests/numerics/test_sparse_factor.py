@@ -14,16 +14,16 @@ CHANNEL = [{0, 1}, {1, 2}, {2, 3}]
 def filled(tape: Tape, matrix: Array) -> Array:
     """The flat values of a dense matrix."""
     n = len(matrix)
-    values = np.append(np.diag(matrix)[tape.node], matrix[tape.node[tape.column], tape.node[tape.row]])
+    values = np.append(np.diag(matrix)[tape.node], matrix[tuple(tape.node[tape.couplings])])
     assert [values[slot_of(tape, i, i)] for i in range(n)] == np.diag(matrix).tolist()
     return values
 
 
 def solved(tape: Tape, matrix: Array, load: Array) -> tuple[bool, Array]:
-    lower, inverse = np.empty(tape.column.size), np.empty(len(matrix))
+    lower, inverse = np.empty(tape.couplings.shape[1]), np.empty(len(matrix))
     definite = factor(tape, filled(tape, matrix), lower, inverse)
     x, out = load[tape.node], np.empty(len(matrix))
-    substitute(tape, lower, inverse, x)
+    substitute(tape.couplings, lower, inverse, x)
     out[tape.node] = x
     return definite, out
 

@@ -34,7 +34,7 @@ def test_general_integrators_get_the_same_equations(motion: LooseMotion) -> None
         whole[n : 2 * n] = rng.standard_normal(n)
         whole[2 * n] = motion.speed
         expected, y = np.empty_like(whole), whole[: 2 * n].copy()
-        fill_rates(motion.problem.equations, at, t, whole, expected)
+        fill_rates(motion.problem.equations.connected, at, t, whole, expected)
         scale = np.abs(expected[: 2 * n]).max()
         np.testing.assert_allclose(rates(t, y), expected[: 2 * n], rtol=0, atol=1e-9 * scale)
         way = rng.standard_normal(2 * n)

@@ -12,23 +12,31 @@ from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.explicit_rates import elastic_torque, normal_load
 from torsional.numerics.sources import frame_at, row_product
-from torsional.numerics.stepping_data import Equations
+from torsional.numerics.stepping_data import Connected
+from torsional.numerics.stepping_tables import Outside
 
 
 @numba.njit(cache=True, error_model="numpy")
 def element_torques(
-    equations: Equations, time: Array, q: Array, v: Array, memory: Array, turning: Array, torque: Array, load: Array
+    c: Connected,
+    outside: Outside,
+    time: Array,
+    q: Array,
+    v: Array,
+    memory: Array,
+    turning: Array,
+    torque: Array,
+    load: Array,
 ) -> None:
     """Fill ``torque`` [Nm] and ``load`` (S, E) from times (S,), coordinates and their rates (S, N), memories (S, E) and
     the reference rotation Ω_r (S,) [rad/s]; the load of a law without a normal load that varies is zero.
     """
-    c = equations.connected
     count = c.stiffness.size
     angle, rate, elastic = np.empty(count), np.empty(count), np.empty(count)
     for s in range(time.size):
-        frame = frame_at(equations.frame_time, equations.frame_value, time[s])[0]
-        omega = row_product(equations.reference, 0, v[s]) + frame
-        ahead = turning[s] - frame if math.isfinite(equations.reference_time) else 0.0
+        frame = frame_at(outside.knots, outside.frame, time[s])[0]
+        omega = row_product(outside.rows, outside.reference, v[s]) + frame
+        ahead = turning[s] - frame if math.isfinite(outside.reference_time) else 0.0
         for e in range(count):
             angle[e] = row_product(c.rows, e, q[s])
             rate[e] = row_product(c.rows, e, v[s]) - c.follow[e] * ahead + c.mean_rate[e] * frame
@@ -38,7 +46,7 @@ def element_torques(
             if c.address[e] != 0:
                 values = c.law_values[c.law_start[e] : c.law_start[e + 1]].copy()
                 if c.load_place[e] >= 0:
-                    load[s, e] = normal_load(equations, e, time[s], omega, elastic)
+                    load[s, e] = normal_load(c, outside, e, time[s], omega, elastic)
                     values[c.load_place[e]] = load[s, e]
                 law = law_at(c.address[e])
                 torque[s, e] += law(values, angle[e], rate[e], memory[s, e], 0.0)[0]

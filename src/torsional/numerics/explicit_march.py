@@ -16,7 +16,7 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.explicit_rates import Places, fill_rates, places
 from torsional.numerics.sources import frame_at, row_product
-from torsional.numerics.stepping_data import Equations
+from torsional.numerics.stepping_data import Connected, Equations
 
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
 STAGES = np.array(
@@ -54,13 +54,13 @@ class March(NamedTuple):
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _stages(equations: Equations, at: Places, t: float, h: float, end: float, k: Array, y: Array, out: Array) -> None:
+def _stages(connected: Connected, at: Places, t: float, h: float, end: float, k: Array, y: Array, out: Array) -> None:
     """Stages 2 to 7 and the state after a step; none looks at or beyond ``end``, where a load may jump."""
     for s in range(1, 7):
         out[:] = y
         for j in range(s):
             out += h * STAGES[s, j] * k[j]
-        fill_rates(equations, at, min(t + NODES[s] * h, end), out, k[s])
+        fill_rates(connected, at, min(t + NODES[s] * h, end), out, k[s])
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -82,16 +82,16 @@ def _miss(k: Array, h: float, y: Array, after: Array, kinds: IntArray) -> float:
 
 @numba.njit(cache=True, error_model="numpy")
 def _carry(
-    equations: Equations, at: Places, span: tuple[float, float], y: Array, kinds: IntArray, control: Array
+    connected: Connected, at: Places, span: tuple[float, float], y: Array, kinds: IntArray, control: Array
 ) -> None:
     """Carry y over a span without a jump in the loads; ``control``: tolerance, step, earlier error, counts."""
     t, end, tolerance = span[0], span[1], control[0]
     before_end = np.nextafter(end, t)
     k, after = np.empty((7, y.size)), np.empty(y.size)
-    fill_rates(equations, at, t, y, k[0])
+    fill_rates(connected, at, t, y, k[0])
     while t < end and control[3] + control[4] < control[5]:
         h = min(control[1], end - t)
-        _stages(equations, at, t, h, before_end, k, y, after)
+        _stages(connected, at, t, h, before_end, k, y, after)
         miss = _miss(k, h, y, after, kinds) / tolerance
         if miss <= 1.0 or h <= SMALLEST * max(abs(t), abs(end)):
             t = end if h >= end - t else t + h
@@ -108,12 +108,12 @@ def _carry(
 
 @numba.njit(cache=True, error_model="numpy")
 def _march(
-    equations: Equations, at: Places, stops: Array, kept: IntArray, states: Array, kinds: IntArray, control: Array
+    connected: Connected, at: Places, stops: Array, kept: IntArray, states: Array, kinds: IntArray, control: Array
 ) -> bool:
     """Carry the first of ``states`` from stop to stop; whether the steps sufficed."""
     y, row = states[0].copy(), 1
     for i in range(1, stops.size):
-        _carry(equations, at, (stops[i - 1], stops[i]), y, kinds, control)
+        _carry(connected, at, (stops[i - 1], stops[i]), y, kinds, control)
         if control[3] + control[4] >= control[5] or not np.isfinite(y).all():
             return False
         if kept[i] == 1:
@@ -123,11 +123,11 @@ def _march(
 
 
 def _told(equations: Equations, at: Places, grid: Array, states: Array, control: Array) -> March:
-    n, rate = equations.coordinates, np.zeros(at.size)
+    n, rate, connected = equations.coordinates, np.zeros(at.size), equations.connected
     accelerations, memories = np.empty((grid.size, n)), np.zeros((grid.size, at.memory.size))
     memories[:, at.memory >= 0] = states[:, at.memories :]
     for i in range(grid.size):
-        fill_rates(equations, at, grid[i], states[i], rate)
+        fill_rates(connected, at, grid[i], states[i], rate)
         accelerations[i] = rate[n : 2 * n]
     parts = states[:, :n], states[:, n : 2 * n], accelerations, states[:, 2 * n], states[:, at.governor : at.memories]
     return March(grid, *parts, memories, states, int(control[3]), int(control[4]))
@@ -163,7 +163,7 @@ def explicit_march(
     states = np.zeros((grid.size, at.size))
     states[0, :n], states[0, n : 2 * n], states[0, at.governor : at.memories] = angles, rates, integral
     states[0, at.memories :] = np.broadcast_to(np.asarray(memory, dtype=float), at.memory.shape)[at.memory >= 0]
-    frame = frame_at(equations.frame_time, equations.frame_value, grid[0])[0]
+    frame = frame_at(at.outside.knots, at.outside.frame, grid[0])[0]
     turning = frame + row_product(equations.reference, 0, states[0, n : 2 * n])
     states[0, 2 * n] = turning if reference_speed is None else reference_speed
     knots = np.concatenate([equations.driven.level_time, equations.frame_time])
@@ -171,7 +171,7 @@ def explicit_march(
     kept = np.isin(stops, grid).astype(np.int64)
     kinds = np.unique([n, *range(2 * n, at.memories + 1), at.size])  # memories together: some are no more than rounding
     control = np.array([tolerance, 1e-6 * (grid[-1] - grid[0]), 1.0, 0.0, 0.0, most_steps])
-    if not _march(equations, at, stops, kept, states, kinds, control):
+    if not _march(equations.connected, at, stops, kept, states, kinds, control):
         found = f"{control[3]:g} steps taken"
         raise ModelError(
             "the explicit integrator did not arrive", found=found, remedy="a shorter span or implicit steps"

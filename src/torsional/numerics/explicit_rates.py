@@ -20,21 +20,23 @@ from torsional.numerics.sources import (
     crank_terms,
     frame_at,
     governed_torque,
+    governor_error,
     level_at,
     row_product,
-    row_sum,
     source_torques,
 )
 from torsional.numerics.stepping_data import Connected, Equations, Rows
+from torsional.numerics.stepping_tables import SOURCE_START, SOURCE_STOP, Outside, outside_of
 
 
 class Places(NamedTuple):
-    """What a right-hand side needs beside the equations: M (N, N) without pistons and its inverse; where memories are.
+    """What a right-hand side needs beside the connections: M (N, N) without pistons, its inverse; where memories are.
 
     ``memory`` (E,): a connection's place among the memories, or −1; ``slides`` (E,): 1 for a spring and slider;
     ``governor``, ``memories``: where I_g and z begin in y, of ``size`` entries.
     """
 
+    outside: Outside
     mass: Array
     inverse: Array
     memory: IntArray
@@ -55,7 +57,7 @@ def places(equations: Equations, bristles: int = 0, sliders: int = 0) -> Places:
         remedy = "take the implicit steps, or LuGre friction"
         raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
     mass = np.zeros((n, n))
-    add_masses(equations.mass_rows, equations.inertia, mass)
+    add_masses(equations.mass_rows, equations.inertia, mass, 0)
     if np.linalg.matrix_rank(mass, hermitian=True) < n:
         raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
     memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
@@ -64,15 +66,16 @@ def places(equations: Equations, bristles: int = 0, sliders: int = 0) -> Places:
     governor = 2 * n + 1
     memories = governor + equations.governed.proportional.size
     inverse = np.asarray(np.linalg.inv(mass), dtype=float)
-    return Places(mass, inverse, memory, slides, governor, memories, memories + remembers.size)
+    return Places(outside_of(equations), mass, inverse, memory, slides, governor, memories, memories + remembers.size)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def add_masses(rows: Rows, inertia: Array, mass: Array) -> None:
-    """Add Σ J_m v_m v_mᵀ to M (N, N)."""
+def add_masses(rows: Rows, inertia: Array, mass: Array, first: int) -> None:
+    """Add Σ J_m v_m v_mᵀ to M (N, N), of the rows from the ``first`` on."""
     for m in range(inertia.size):
-        for i in range(rows.start[m], rows.start[m + 1]):
-            for j in range(rows.start[m], rows.start[m + 1]):
+        begin, end = rows.start[first + m], rows.start[first + m + 1]
+        for i in range(begin, end):
+            for j in range(begin, end):
                 mass[rows.column[i], rows.column[j]] += inertia[m] * rows.weight[i] * rows.weight[j]
 
 
@@ -98,10 +101,9 @@ def elastic_torque(connected: Connected, e: int, angle: float, rate: float, omeg
 
 
 @numba.njit(cache=True, error_model="numpy")
-def normal_load(equations: Equations, e: int, t: float, omega: float, elastic: Array) -> float:
+def normal_load(c: Connected, outside: Outside, e: int, t: float, omega: float, elastic: Array) -> float:
     """N of a law whose load follows a level, speed and the torques of springs."""
-    c, d = equations.connected, equations.driven
-    load = c.load_constant[e] * level_at(d.level_start, d.level_time, d.level_value, c.load_level[e], t)
+    load = c.load_constant[e] * level_at(outside.level_start, outside.knots, c.load_level[e], t)
     load += c.load_centrifugal[e] * omega * omega
     for j in range(c.load_start[e], c.load_start[e + 1]):
         load += c.load_share[j] * abs(elastic[c.load_of[j]])
@@ -120,13 +122,13 @@ def _memory_rate(values: Array, slides: bool, rate: float, bent: float) -> float
 
 @numba.njit(cache=True, error_model="numpy")
 def _connection_torques(
-    equations: Equations, at: Places, t: float, y: Array, frame_speed: float, torque: Array, out: Array
+    c: Connected, at: Places, t: float, y: Array, frame_speed: float, torque: Array, out: Array
 ) -> None:
     """Take the torques of all connections from ``torque`` (N,), and put the rates of memories into ``out``."""
-    c, n = equations.connected, equations.coordinates
+    n, outside = torque.size, at.outside
     q, v, count = y[:n], y[n : 2 * n], c.stiffness.size
-    omega = row_product(equations.reference, 0, v) + frame_speed
-    turning = y[2 * n] - frame_speed if math.isfinite(equations.reference_time) else 0.0
+    omega = row_product(outside.rows, outside.reference, v) + frame_speed
+    turning = y[2 * n] - frame_speed if math.isfinite(outside.reference_time) else 0.0
     angle, rate, elastic = np.empty(count), np.empty(count), np.empty(count)
     for e in range(count):
         angle[e] = row_product(c.rows, e, q)
@@ -137,7 +139,7 @@ def _connection_torques(
         if c.address[e] != 0:
             values = c.law_values[c.law_start[e] : c.law_start[e + 1]].copy()
             if c.load_place[e] >= 0:
-                values[c.load_place[e]] = normal_load(equations, e, t, omega, elastic)
+                values[c.load_place[e]] = normal_load(c, outside, e, t, omega, elastic)
             bent = 0.0
             if at.memory[e] >= 0:
                 bent = y[at.memories + at.memory[e]]
@@ -148,40 +150,36 @@ def _connection_torques(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _drive(
-    equations: Equations, at: Places, t: float, y: Array, frame: tuple[float, float], torque: Array, out: Array
-) -> None:
+def _drive(at: Places, t: float, y: Array, frame: tuple[float, float], torque: Array, out: Array) -> None:
     """Add the torques of sources and governors, whose integrals' rates go into ``out``."""
-    d, g_all, n = equations.driven, equations.governed, equations.coordinates
-    extra, torques = np.zeros(d.multiple.size), np.empty(d.multiple.size)
-    for g in range(g_all.proportional.size):
-        wanted = level_at(d.level_start, d.level_time, d.level_value, g_all.wanted_of[g], t)
-        speed = row_product(g_all.sense, g, y[n : 2 * n]) + frame[0] * row_sum(g_all.sense, g)
-        given, out[at.governor + g] = governed_torque(g_all, g, wanted - speed, y[at.governor + g])
-        if g_all.source_start[g] == g_all.source_start[g + 1]:
-            add_row(g_all.act, g, given, torque)
-        for k in range(g_all.source_start[g], g_all.source_start[g + 1]):
-            extra[g_all.source[k]] += given
-    source_torques(d, t, frame[1], y[:n], extra, torques)
+    outside, n = at.outside, torque.size
+    extra, torques = np.zeros(outside.sources.shape[1]), np.empty(outside.sources.shape[1])
+    for g in range(outside.governors.shape[1]):
+        error = governor_error(outside, g, t, frame[0], y[n : 2 * n])
+        given, out[at.governor + g] = governed_torque(outside.governors, g, error, y[at.governor + g])
+        first, last = outside.governor_places[SOURCE_START, g], outside.governor_places[SOURCE_STOP, g]
+        if first == last:
+            add_row(outside.rows, outside.act + g, given, torque)
+        for k in range(first, last):
+            extra[outside.governed[k]] += given
+    source_torques(outside, t, frame[1], y[:n], extra, torques)
     for s in range(torques.size):
-        add_row(d.rows, s, torques[s], torque)
+        add_row(outside.rows, s, torques[s], torque)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _accelerate(
-    equations: Equations, at: Places, y: Array, frame: tuple[float, float], torque: Array, out: Array
-) -> None:
+def _accelerate(at: Places, y: Array, frame: tuple[float, float], torque: Array, out: Array) -> None:
     """M(q) q̈ = torque, with the moving pistons in M and in the torque."""
-    d, n = equations.driven, equations.coordinates
-    pistons = d.crank_rows.start.size - 1
+    outside, n = at.outside, torque.size
+    first, pistons = outside.crank_row, outside.sense - outside.crank_row
     if pistons == 0:
         out[:] = at.inverse @ torque
         return
     constant, inertia, mass = np.empty(pistons), np.empty(pistons), at.mass.copy()
-    crank_terms(d, frame[1], frame[0], y[:n], y[n : 2 * n], constant, inertia)
+    crank_terms(outside, frame[1], frame[0], y[:n], y[n : 2 * n], constant, inertia)
     for m in range(pistons):
-        add_row(d.crank_rows, m, constant[m], torque)
-    add_masses(d.crank_rows, inertia, mass)
+        add_row(outside.rows, first + m, constant[m], torque)
+    add_masses(outside.rows, inertia, mass, first)
     order = np.empty(n, dtype=np.int64)
     factor(mass, order)
     backsolve(mass, order, torque)
@@ -189,15 +187,15 @@ def _accelerate(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def fill_rates(equations: Equations, at: Places, t: float, y: Array, out: Array) -> None:
+def fill_rates(connected: Connected, at: Places, t: float, y: Array, out: Array) -> None:
     """ẏ into ``out``."""
-    n, torque = equations.coordinates, np.zeros(equations.coordinates)
-    frame = frame_at(equations.frame_time, equations.frame_value, t)
-    _connection_torques(equations, at, t, y, frame[0], torque, out)
-    _drive(equations, at, t, y, frame, torque, out)
+    outside, n = at.outside, at.mass.shape[0]
+    torque, frame = np.zeros(n), frame_at(outside.knots, outside.frame, t)
+    _connection_torques(connected, at, t, y, frame[0], torque, out)
+    _drive(at, t, y, frame, torque, out)
     out[:n] = y[n : 2 * n]
-    _accelerate(equations, at, y, frame, torque, out[n : 2 * n])
+    _accelerate(at, y, frame, torque, out[n : 2 * n])
     out[2 * n] = 0.0
-    if math.isfinite(equations.reference_time):
-        omega = row_product(equations.reference, 0, y[n : 2 * n]) + frame[0]
-        out[2 * n] = (omega - y[2 * n]) / equations.reference_time
+    if math.isfinite(outside.reference_time):
+        omega = row_product(outside.rows, outside.reference, y[n : 2 * n]) + frame[0]
+        out[2 * n] = (omega - y[2 * n]) / outside.reference_time

@@ -20,25 +20,27 @@ from torsional.numerics.uncounted import inlined, uncounted
 
 PlaceArray = NDArray[np.uint32]
 
+LEVEL, COUPLED, UPDATED = range(3)
+"""Rows of ``levels``."""
+COLUMN, ROW = range(2)
+"""Rows of ``couplings``."""
+TARGET, LEFT, RIGHT = range(3)
+"""Rows of ``updates``."""
+
 
 class Tape(NamedTuple):
     """What factor and solve follow.  Positions count in the order of elimination, slots in the flat array.
 
-    ``node`` (n,) is the coordinate at each position.  Positions of one level, ``level`` to the next, do not depend on
-    each other; their couplings are those from ``coupled`` on, each with ``column`` and ``row`` (positions), and their
-    updates a[target] −= l[left] a[right] those from ``updated`` on (slots, ``left`` counted among couplings).
-    ``back_…`` are the couplings in the order that the back substitution takes them.
+    ``node`` (n,) is the coordinate at each position.  ``levels`` (3, levels + 1): positions of one level, from LEVEL to
+    the next, do not depend on each other; their couplings are those from COUPLED on, their updates those from UPDATED
+    on.  ``couplings`` (2, …): COLUMN and ROW, positions.  ``updates`` (3, …): a[TARGET] −= l[LEFT] a[RIGHT], slots,
+    LEFT counted among couplings.
     """
 
     node: PlaceArray
-    level: PlaceArray
-    coupled: PlaceArray
-    updated: PlaceArray
-    column: PlaceArray
-    row: PlaceArray
-    target: PlaceArray
-    left: PlaceArray
-    right: PlaceArray
+    levels: PlaceArray
+    couplings: PlaceArray
+    updates: PlaceArray
 
 
 def places(values: Iterable[int]) -> PlaceArray:
@@ -89,16 +91,12 @@ def tape_of(supports: Sequence[set[int]], n: int) -> Tape:
         coupled.append(len(couplings))
         updates += [(i, j, p) for p in members for a, j in enumerate(below[p]) for i in below[p][a:]]
         updated.append(len(updates))
+    taken = [(slots[j, i], slots[p, i] - n, slots[p, j]) for i, j, p in updates]
     return Tape(
         node=places(node for node, _, _ in order),
-        level=places(starts),
-        coupled=places(coupled),
-        updated=places(updated),
-        column=places(p for p, _ in couplings),
-        row=places(i for _, i in couplings),
-        target=places(slots[j, i] for i, j, _ in updates),
-        left=places(slots[p, i] - n for i, _, p in updates),
-        right=places(slots[p, j] for _, j, p in updates),
+        levels=np.array([starts, coupled, updated], dtype=np.uint32),
+        couplings=np.array(couplings, dtype=np.uint32).reshape(-1, 2).T.copy(),
+        updates=np.array(taken, dtype=np.uint32).reshape(-1, 3).T.copy(),
     )
 
 
@@ -111,7 +109,7 @@ def slot_of(tape: Tape, i: int, j: int) -> int:
     p, r = sorted((int(np.flatnonzero(tape.node == i)[0]), int(np.flatnonzero(tape.node == j)[0])))
     if p == r:
         return p
-    found = np.flatnonzero((tape.column == p) & (tape.row == r))
+    found = np.flatnonzero((tape.couplings[COLUMN] == p) & (tape.couplings[ROW] == r))
     if not found.size:
         raise ValueError(f"({i}, {j}) is outside the pattern")
     return int(tape.node.size + found[0])
@@ -123,25 +121,25 @@ def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
 
     False where a pivot is not positive: the matrix is not positive definite.
     """
-    n, worst = np.uint32(inverse.size), np.inf
-    for level in range(tape.level.size - 1):
-        for p in range(tape.level[level], tape.level[level + 1]):
+    n, worst, levels, updates = np.uint32(inverse.size), np.inf, tape.levels, tape.updates
+    for level in range(levels.shape[1] - 1):
+        for p in range(levels[LEVEL, level], levels[LEVEL, level + 1]):
             worst = min(worst, matrix[p])
             inverse[p] = 1.0 / matrix[p]
-        for c in range(tape.coupled[level], tape.coupled[level + 1]):
-            lower[c] = matrix[n + c] * inverse[tape.column[c]]
-        for u in range(tape.updated[level], tape.updated[level + 1]):
-            matrix[tape.target[u]] -= lower[tape.left[u]] * matrix[tape.right[u]]
+        for c in range(levels[COUPLED, level], levels[COUPLED, level + 1]):
+            lower[c] = matrix[n + c] * inverse[tape.couplings[COLUMN, c]]
+        for u in range(levels[UPDATED, level], levels[UPDATED, level + 1]):
+            matrix[updates[TARGET, u]] -= lower[updates[LEFT, u]] * matrix[updates[RIGHT, u]]
     return worst > 0.0
 
 
 @inlined()
-def substitute(tape: Tape, lower: Array, inverse: Array, x: Array) -> None:
+def substitute(couplings: PlaceArray, lower: Array, inverse: Array, x: Array) -> None:
     """The solution in place of the right-hand side x (n,), both in the order of elimination."""
     count = lower.size
     for c in range(count):
-        x[tape.row[c]] -= lower[c] * x[tape.column[c]]
+        x[couplings[ROW, c]] -= lower[c] * x[couplings[COLUMN, c]]
     for p in range(x.size):
         x[p] *= inverse[p]
     for c in range(count - 1, -1, -1):
-        x[tape.column[c]] -= lower[c] * x[tape.row[c]]
+        x[couplings[COLUMN, c]] -= lower[c] * x[couplings[ROW, c]]

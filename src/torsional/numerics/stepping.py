@@ -87,6 +87,6 @@ def _check(step: float, steps: int, places: IntArray) -> None:
 
 
 def _records(plan: Plan, count: int) -> Records:
-    n, connections, laws = plan.tape.node.size, plan.pairs.left.size, plan.laws.of.size
-    widths = (n, n, n, connections, connections, laws, laws, laws, len(Entry))
-    return Records(np.full(count, np.nan), *(np.full((count, width), np.nan) for width in widths))
+    n, connections, laws = plan.tape.node.size, plan.constants.shape[1], plan.laws.places.shape[1]
+    shapes = ((count,), (3, count, n), (2, count, connections), (3, count, laws), (count, len(Entry)))
+    return Records(*(np.full(shape, np.nan) for shape in shapes))

@@ -9,208 +9,223 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
-from torsional.numerics.stepping_plan import Constants, HingeRows, Laws, Loads, Pairs
-from torsional.numerics.uncounted import inlined, uncounted
+from torsional.numerics.stepping_plan import (
+    ADDRESS,
+    CENTRIFUGAL,
+    CHANGE,
+    DAMPER,
+    GAP,
+    LAW_OF,
+    LEFT,
+    LOAD_AT,
+    LOAD_CONSTANT,
+    LOAD_SQUARED,
+    REMEMBERS,
+    RIGHT,
+    SHARES_START,
+    SHARES_STOP,
+    SIDE,
+    SPRING,
+    START,
+    STOP,
+    HingeRows,
+    Laws,
+    Pairs,
+)
+from torsional.numerics.stepping_state import LAW_TORQUE, LOAD, MEMORY, OFFSET, RATE, TORQUE, TWIST
+from torsional.numerics.uncounted import inlined, inner
 
 ROUNDING = 1e-15
 """Share of a hinge's angle by which it may be on the wrong side: all that rounding leaves to tell."""
 TRUSTED = 4
 """Passes for which the tangent of a law is believed; from then on it is one that cannot overshoot."""
+MOVED, STIFFNESS, DAMPING, SHIFT, STEP, SHARE = range(4, 10)
+"""Rows of ``now`` (10, E), the connections while a step is sought, after the first four of `State.connection`.
 
-
-class Connections(NamedTuple):
-    """Connections (E,) while a step is sought: where they are, and their tangents; ``share`` of the step matrix with
-    and ``step`` without their laws; ``offset`` of the rate by rotations; ``moved`` w·δ of the last pass."""
-
-    twist: Array
-    rate: Array
-    torque: Array
-    offset: Array
-    moved: Array
-    stiffness: Array
-    damping: Array
-    shift: Array
-    step: Array
-    share: Array
+w·δ of the last pass, tangents and shift with the closed hinges, shares of the step matrix without and with the laws.
+"""
+CONNECTION_ROWS = 10
+FACING, DELAY = range(2)
+"""Rows of the hinges while a step is sought: side where closed, −side where open; contact times under the guard."""
+SLOPE, BUILT, DRAG, LEVEL = range(3, 7)
+"""Rows of the laws, after the first three of `State.law`: share of the step matrix, that of it which is in the matrix,
+the tangent at rates beside the mean one, the level that the load follows."""
+LAW_ROWS = 7
 
 
 class Bent(NamedTuple):
-    """Hinges (H,): ``facing`` = side where closed, −side where open, and contact times under the guard.  Laws (L,):
-    ``torque``, ``memory`` after the step, normal ``load``, share ``slope`` of the step matrix and that of it which is
-    in the matrix, ``drag`` at rates beside the mean one; ``values`` with the loads of now."""
+    """Hinges (2, H), laws (7, L), and the laws' ``values`` with the loads of now."""
 
-    facing: Array
-    contact_time: Array
-    torque: Array
-    memory: Array
-    load: Array
-    slope: Array
-    built: Array
-    drag: Array
+    hinges: Array
+    laws: Array
     values: Array
 
 
 @inlined()
 def gather(pairs: Pairs, x: Array, out: Array) -> None:
     """w_e·x into ``out`` (E,)."""
+    ends, weights = pairs.ends, pairs.weights
     for e in range(out.size):
-        out[e] = pairs.first[e] * x[pairs.left[e]] + pairs.second[e] * x[pairs.right[e]]
-    for k in range(pairs.extra_row.size):
-        out[pairs.extra_row[k]] += pairs.extra_weight[k] * x[pairs.extra_column[k]]
+        out[e] = weights[LEFT, e] * x[ends[LEFT, e]] + weights[RIGHT, e] * x[ends[RIGHT, e]]
+    for k in range(pairs.extra.size):
+        out[pairs.extra_at[LEFT, k]] += pairs.extra[k] * x[pairs.extra_at[RIGHT, k]]
 
 
 @inlined()
 def scatter(pairs: Pairs, torque: Array, x: Array) -> None:
     """x ← x − Σ w_e T_e."""
+    ends, weights = pairs.ends, pairs.weights
     for e in range(torque.size):
-        x[pairs.left[e]] -= pairs.first[e] * torque[e]
-        x[pairs.right[e]] -= pairs.second[e] * torque[e]
-    for k in range(pairs.extra_row.size):
-        x[pairs.extra_column[k]] -= pairs.extra_weight[k] * torque[pairs.extra_row[k]]
+        x[ends[LEFT, e]] -= weights[LEFT, e] * torque[e]
+        x[ends[RIGHT, e]] -= weights[RIGHT, e] * torque[e]
+    for k in range(pairs.extra.size):
+        x[pairs.extra_at[RIGHT, k]] -= pairs.extra[k] * torque[pairs.extra_at[LEFT, k]]
 
 
 @inlined()
 def scatter_one(pairs: Pairs, e: int, torque: float, x: Array) -> None:
     """x ← x − w_e T for one connection."""
-    x[pairs.left[e]] -= pairs.first[e] * torque
-    x[pairs.right[e]] -= pairs.second[e] * torque
-    for k in range(pairs.extra_row.size):
-        if pairs.extra_row[k] == e:
-            x[pairs.extra_column[k]] -= pairs.extra_weight[k] * torque
+    x[pairs.ends[LEFT, e]] -= pairs.weights[LEFT, e] * torque
+    x[pairs.ends[RIGHT, e]] -= pairs.weights[RIGHT, e] * torque
+    for k in range(pairs.extra.size):
+        if pairs.extra_at[LEFT, k] == e:
+            x[pairs.extra_at[RIGHT, k]] -= pairs.extra[k] * torque
 
 
 @inlined()
-def torques(now: Connections) -> None:
+def torques(now: Array) -> None:
     """T = k φ + c φ̇ − shift."""
-    for e in range(now.torque.size):
-        now.torque[e] = now.stiffness[e] * now.twist[e] + now.damping[e] * now.rate[e] - now.shift[e]
+    for e in range(now.shape[1]):
+        now[TORQUE, e] = now[STIFFNESS, e] * now[TWIST, e] + now[DAMPING, e] * now[RATE, e] - now[SHIFT, e]
 
 
 @inlined()
-def advance(now: Connections, by_angle: float, by_rate: float) -> None:
-    """Twists, rates and torques after δ, of which ``moved`` is w·δ."""
-    for e in range(now.twist.size):
-        now.twist[e] += by_angle * now.moved[e]
-        now.rate[e] += by_rate * now.moved[e]
-        now.torque[e] += now.step[e] * now.moved[e]
+def advance(now: Array, by_angle: float, by_rate: float) -> None:
+    """Twists, rates and torques after δ, of which MOVED is w·δ."""
+    for e in range(now.shape[1]):
+        now[TWIST, e] += by_angle * now[MOVED, e]
+        now[RATE, e] += by_rate * now[MOVED, e]
+        now[TORQUE, e] += now[STEP, e] * now[MOVED, e]
 
 
-@uncounted()
+@inner()
 def tangents(
-    constants: Constants,
-    hinges: HingeRows,
-    now: Connections,
-    bent: Bent,
-    squared: float,
-    by_angle: float,
-    by_rate: float,
+    constants: Array, hinges: HingeRows, now: Array, bent: Array, squared: float, by_angle: float, by_rate: float
 ) -> None:
-    """Tangents of all connections for the hinges that are closed, at Ω² = ``squared``."""
-    for e in range(now.stiffness.size):
-        now.stiffness[e] = constants.stiffness[e] + squared * constants.centrifugal[e]
-        now.damping[e] = constants.damping[e]
-        now.shift[e] = 0.0
+    """Tangents of all connections for the hinges ``bent`` that are closed, at Ω² = ``squared``."""
+    for e in range(now.shape[1]):
+        now[STIFFNESS, e] = constants[SPRING, e] + squared * constants[CENTRIFUGAL, e]
+        now[DAMPING, e] = constants[DAMPER, e]
+        now[SHIFT, e] = 0.0
     for i in range(hinges.of.size):
-        if bent.facing[i] * hinges.side[i] > 0.0:
-            e, change = hinges.of[i], hinges.change[i]
-            now.stiffness[e] += change
-            now.damping[e] += change * bent.contact_time[i]
-            now.shift[e] += change * hinges.gap[i]
-    for e in range(now.step.size):
-        now.step[e] = by_angle * now.stiffness[e] + by_rate * now.damping[e]
+        if bent[FACING, i] * hinges.values[SIDE, i] > 0.0:
+            e, change = hinges.of[i], hinges.values[CHANGE, i]
+            now[STIFFNESS, e] += change
+            now[DAMPING, e] += change * bent[DELAY, i]
+            now[SHIFT, e] += change * hinges.values[GAP, i]
+    for e in range(now.shape[1]):
+        now[STEP, e] = by_angle * now[STIFFNESS, e] + by_rate * now[DAMPING, e]
 
 
 @inlined()
-def disagreeing(hinges: HingeRows, bent: Bent, now: Connections) -> int:
+def disagreeing(hinges: HingeRows, bent: Array, now: Array) -> int:
     """Hinges that are open where they should be closed, or closed where open."""
     count = 0
     for i in range(hinges.of.size):
-        e = hinges.of[i]
-        beyond = now.twist[e] - hinges.gap[i] + bent.contact_time[i] * now.rate[e]
-        count += bent.facing[i] * beyond < -ROUNDING * (abs(hinges.gap[i]) + abs(now.twist[e]))
+        e, gap = hinges.of[i], hinges.values[GAP, i]
+        beyond = now[TWIST, e] - gap + bent[DELAY, i] * now[RATE, e]
+        count += bent[FACING, i] * beyond < -ROUNDING * (abs(gap) + abs(now[TWIST, e]))
     return count
 
 
-@uncounted()
-def turn(hinges: HingeRows, bent: Bent, now: Connections, one: bool) -> None:
+@inner()
+def turn(hinges: HingeRows, bent: Array, now: Array, one: bool) -> None:
     """Open or close the hinges that disagree; all of them, or the last ``one`` alone."""
     for k in range(hinges.of.size):
         i = hinges.of.size - 1 - k
-        e = hinges.of[i]
-        beyond = now.twist[e] - hinges.gap[i] + bent.contact_time[i] * now.rate[e]
-        if bent.facing[i] * beyond < -ROUNDING * (abs(hinges.gap[i]) + abs(now.twist[e])):
-            bent.facing[i] = -bent.facing[i]
+        e, gap = hinges.of[i], hinges.values[GAP, i]
+        beyond = now[TWIST, e] - gap + bent[DELAY, i] * now[RATE, e]
+        if bent[FACING, i] * beyond < -ROUNDING * (abs(gap) + abs(now[TWIST, e])):
+            bent[FACING, i] = -bent[FACING, i]
             if one:
                 return
 
 
-@uncounted()
-def press(loads: Loads, laws: Laws, now: Connections, bent: Bent, squared: float, levels: Array) -> None:
+@inner()
+def press(laws: Laws, now: Array, bent: Bent, squared: float) -> None:
     """Normal loads N of the laws that have one, from Ω² = ``squared`` and the torques of now."""
-    for l in range(laws.of.size):
-        if laws.load_at[l] < 0:
+    places = laws.places
+    for l in range(places.shape[1]):
+        if places[LOAD_AT, l] < 0:
             continue
-        e = laws.of[l]
-        total = loads.constant[e] * levels[l] + loads.centrifugal[e] * squared
-        for k in range(loads.start[e], loads.start[e + 1]):
-            total += loads.share[k] * abs(now.torque[loads.of[k]])
-        bent.load[l] = max(0.0, total)
-        bent.values[laws.load_at[l]] = bent.load[l]
+        total = laws.loads[LOAD_CONSTANT, l] * bent.laws[LEVEL, l] + laws.loads[LOAD_SQUARED, l] * squared
+        for k in range(places[SHARES_START, l], places[SHARES_STOP, l]):
+            total += laws.shares[k] * abs(now[TORQUE, laws.load_of[k]])
+        bent.laws[LOAD, l] = max(0.0, total)
+        bent.values[places[LOAD_AT, l]] = bent.laws[LOAD, l]
 
 
-@uncounted()
+@inner()
 def bend(
-    laws: Laws, now: Connections, bent: Bent, before: Array, memory: Array, h: float, steps: tuple[float, float], n: int
+    laws: Laws, now: Array, bent: Bent, before: Array, memory: Array, h: float, steps: tuple[float, float], n: int
 ) -> float:
     """Torques and tangents of the laws at the motion of now; how far the torques were off what was expected [Nm].
 
     ``before`` (4, E) and ``memory`` (L,) are those at the step's begin, ``steps`` βh², γh, n the pass.  A law with
-    memory moves at the mean rate of the step, which is φ⁺ − φ over h; what it lacks at the end is ``drag`` times the
-    rate beside the mean.
+    memory moves at the mean rate of the step, which is φ⁺ − φ over h; what it lacks at the end is DRAG times the rate
+    beside the mean.
     """
-    worst = 0.0
+    worst, places, own = 0.0, laws.places, bent.laws
     by_angle, by_rate = steps[0], steps[1]
-    for l in range(laws.of.size):
-        e, torque = laws.of[l], law_at(laws.address[l])
-        values = bent.values[laws.start[l] : laws.stop[l]]
-        rate, mean, weight, drag = now.rate[e], now.rate[e], by_rate, 0.0
-        if laws.remembers[l]:
-            mean = (now.twist[e] - before[0, e]) / h + 0.5 * (now.offset[e] + before[3, e])
-            weight, drag = by_angle / h, bent.drag[l]
-        told = torque(values, now.twist[e], mean, memory[l], h)
+    for l in range(places.shape[1]):
+        e, torque = places[LAW_OF, l], law_at(places[ADDRESS, l])
+        values, twist = bent.values[places[START, l] : places[STOP, l]], now[TWIST, e]
+        rate, mean, weight, drag = now[RATE, e], now[RATE, e], by_rate, 0.0
+        if places[REMEMBERS, l]:
+            mean = (twist - before[TWIST, e]) / h + 0.5 * (now[OFFSET, e] + before[OFFSET, e])
+            weight, drag = by_angle / h, own[DRAG, l]
+        told = torque(values, twist, mean, memory[l], h)
         rise = told[2]
         if rise < 0.0 or n >= TRUSTED:
-            rise = max(rise, _chord(laws, l, values, now.twist[e], mean, memory[l], h, told[0], told[3]))
+            rise = max(rise, _chord(places, l, values, twist, mean, memory[l], h, told[0], told[3]))
         drag *= min(max(told[7], 0.0), 1.0)  # a bristle that has slid on through the step has no rate of its own left
         found = told[0] + drag * (rate - mean)
-        worst = max(worst, abs(found - bent.torque[l]))
-        bent.torque[l], bent.memory[l] = found, told[4]
-        bent.slope[l] = by_angle * max(told[1], 0.0) + weight * rise + drag * (by_rate - weight)
+        worst = max(worst, abs(found - own[LAW_TORQUE, l]))
+        own[LAW_TORQUE, l], own[MEMORY, l] = found, told[4]
+        own[SLOPE, l] = by_angle * max(told[1], 0.0) + weight * rise + drag * (by_rate - weight)
     return worst
 
 
-@uncounted()
+@inner()
 def _chord(
-    laws: Laws, l: int, values: Array, twist: float, mean: float, memory: float, h: float, found: float, fades: float
+    places: IntArray,
+    l: int,
+    values: Array,
+    twist: float,
+    mean: float,
+    memory: float,
+    h: float,
+    found: float,
+    fades: float,
 ) -> float:
     """∂T/∂u where a(u) is held at the last rate, or for a law without memory the chord from rest: not negative."""
     if mean == 0.0:
         return 0.0
     rest = fades * memory
-    if not laws.remembers[l]:
-        torque = law_at(laws.address[l])
+    if not places[REMEMBERS, l]:
+        torque = law_at(places[ADDRESS, l])
         rest = torque(values, twist, 0.0, memory, h)[0]
     return max(0.0, (found - rest) / mean)
 
 
-@uncounted()
-def drags(laws: Laws, bent: Bent, before: Array, memory: Array) -> None:
+@inner()
+def drags(places: IntArray, bent: Bent, before: Array, memory: Array) -> None:
     """∂T/∂u at the step's begin with the memory held."""
-    for l in range(laws.of.size):
-        bent.drag[l] = 0.0
-        if laws.remembers[l]:
-            e, torque = laws.of[l], law_at(laws.address[l])
-            values = bent.values[laws.start[l] : laws.stop[l]]
-            bent.drag[l] = max(0.0, torque(values, before[0, e], before[1, e], memory[l], 0.0)[2])
+    for l in range(places.shape[1]):
+        bent.laws[DRAG, l] = 0.0
+        if places[REMEMBERS, l]:
+            e, torque = places[LAW_OF, l], law_at(places[ADDRESS, l])
+            values = bent.values[places[START, l] : places[STOP, l]]
+            bent.laws[DRAG, l] = max(0.0, torque(values, before[TWIST, e], before[RATE, e], memory[l], 0.0)[2])

@@ -6,14 +6,32 @@ from __future__ import annotations
 import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.sparse_factor import PlaceArray
-from torsional.numerics.stepping_forces import Bent, Connections
+from torsional.numerics.stepping_forces import CONNECTION_ROWS, FACING, LAW_ROWS, LEVEL, Bent
 from torsional.numerics.stepping_ledger import book, stored
-from torsional.numerics.stepping_plan import Constants, HingeRows, Masses, Plan
+from torsional.numerics.stepping_plan import LAW_OF, LOAD_AT, SIDE, HingeRows, Masses, Plan
 from torsional.numerics.stepping_settle import settle
-from torsional.numerics.stepping_state import Count, Records, Settings, State, Status
-from torsional.numerics.stepping_step import Driving, Method, Solver, Trial, Work, begin_rung
-from torsional.numerics.uncounted import inlined, uncounted
+from torsional.numerics.stepping_state import (
+    ACCELERATION,
+    DELTA,
+    FRAME,
+    LAW_TORQUE,
+    LOAD,
+    LOST,
+    MEMORY,
+    OFFSET,
+    OWN,
+    TORQUE,
+    TWIST,
+    Count,
+    Q,
+    Records,
+    Settings,
+    State,
+    Status,
+    V,
+)
+from torsional.numerics.stepping_step import GATHERED, STEADY, Driving, Method, Solver, Work, begin_rung
+from torsional.numerics.uncounted import inlined, inner, uncounted
 
 ROOM = 0.1
 """Share of the error allowed below which twice the step is tried."""
@@ -23,29 +41,21 @@ PATIENCE = 4
 
 def new_work(plan: Plan, state: State) -> Work:
     """Memory for a march from a state."""
-    n, edges = plan.tape.node.size, plan.tape.column.size
-    connections, hinges, laws = plan.pairs.left.size, plan.hinges.of.size, plan.laws.of.size
-    sources, governors = plan.outside.driven.multiple.size, state.integral.size
-    cranks = plan.outside.driven.crank_rows.start.size - 1
-    values, pressed = plan.laws.values.copy(), plan.laws.load_at >= 0
-    values[plan.laws.load_at[pressed]] = state.law[2, pressed]
-    bent = Bent(
-        facing=state.sense * plan.hinges.side,
-        contact_time=np.zeros(hinges),
-        torque=state.law[0].copy(),
-        memory=state.law[1].copy(),
-        load=state.law[2].copy(),
-        slope=np.zeros(laws),
-        built=np.zeros(laws),
-        drag=np.zeros(laws),
-        values=values,
-    )
-    counts = (sources, sources, governors, governors, cranks, cranks)
-    driving = Driving._make([*(np.zeros(count) for count in counts), np.ones(laws), np.zeros(4)])
-    driving.speeds[1:] = state.reference[[2, 0, 1]]
-    now = Connections._make(np.zeros((10, connections)))
-    solver = Solver._make(np.zeros(count) for count in (n + edges, n + edges, edges, n, 2))
-    return Work(Trial._make(np.zeros((8, n))), solver, driving, now._replace(offset=state.connection[3].copy()), bent)
+    n, edges, outside = plan.tape.node.size, plan.tape.couplings.shape[1], plan.outside
+    hinges, laws = plan.hinges.of.size, plan.laws.places.shape[1]
+    cranks = outside.cranks.shape[1] + 3 * len(outside.pendulums)
+    bent = Bent(np.zeros((2, hinges)), np.zeros((LAW_ROWS, laws)), plan.laws.values.copy())
+    pressed = plan.laws.places[LOAD_AT] >= 0
+    bent.values[plan.laws.places[LOAD_AT, pressed]] = state.law[LOAD, pressed]
+    bent.hinges[FACING] = state.sense * plan.hinges.values[SIDE]
+    bent.laws[: LOAD + 1], bent.laws[LEVEL] = state.law[: LOAD + 1], 1.0
+    shapes = (outside.sources.shape[1], outside.governors.shape[1], cranks)
+    sources, governors, moving = (np.zeros((2, count)) for count in shapes)
+    driving = Driving(sources, governors, moving, np.append(state.reference, np.zeros(3)))
+    now = np.zeros((CONNECTION_ROWS, plan.constants.shape[1]))
+    now[OFFSET] = state.connection[OFFSET]
+    solver = Solver(np.zeros((2, n + edges)), np.zeros(edges), np.zeros(n))
+    return Work(np.zeros((8, n)), solver, driving, now, bent)
 
 
 @inlined()
@@ -59,50 +69,54 @@ def rung_of(method: tuple[float, float, float, float], h: float) -> Method:
 def _accept(plan: Plan, state: State, w: Work, h: float) -> None:
     """Make the trial the state."""
     book(plan, state, w, h)
-    trial, now = w.trial, w.now
-    q, v, acceleration, own = state.coordinates
-    for i in range(trial.q.size):
-        q[i], v[i], acceleration[i], own[i] = trial.q[i], trial.v[i], trial.acceleration[i], trial.own[i]
-        state.external[i], state.inertial[i] = trial.external[i], trial.left[i]
-    twist, rate, torque, offset = state.connection
-    for e in range(now.twist.size):
-        twist[e], rate[e], torque[e], offset[e] = now.twist[e], now.rate[e], now.torque[e], now.offset[e]
-    for i in range(state.sense.size):
-        state.sense[i] = w.bent.facing[i] * plan.hinges.side[i]
-    for g in range(state.integral.size):
-        state.integral[g] = w.driving.integral[g]
-    speeds = w.driving.speeds
-    state.reference[0], state.reference[1], state.reference[2] = speeds[2], speeds[3], speeds[1]
+    trial, now, facing, held, speeds = w.trial, w.now, w.bent.hinges[FACING], w.driving.governors, w.driving.speeds
+    q, at, sense, sides = state.coordinates, state.connection, state.sense, plan.hinges.values[SIDE]
+    integral, reference = state.integral, state.reference
+    for row in range(DELTA):
+        for i in range(trial.shape[1]):
+            q[row, i] = trial[row, i]
+    for row in range(OFFSET + 1):
+        for e in range(now.shape[1]):
+            at[row, e] = now[row, e]
+    for i in range(sense.size):
+        sense[i] = facing[i] * sides[i]
+    for g in range(integral.size):
+        integral[g] = held[GATHERED, g]
+    for place in range(FRAME + 1):
+        reference[place] = speeds[place]
 
 
-@uncounted()
-def _error(own: Array, q: Array, before: Array, m: Method, settings: Settings) -> float:
+@inner()
+def _error(trial: Array, before: Array, m: Method, settings: Settings) -> float:
     """Local error of the angles over what is allowed, h² |β − 1/6| |a⁺ − a|: Zienkiewicz and Xie, Earthq. Eng. Struct.
     Dyn. 20 (1991) 871."""
     worst, share = 0.0, m.h * m.h * abs(m.beta - 1.0 / 6.0)
-    for i in range(q.size):
-        allowed = settings.angle_error + settings.relative_error * abs(q[i])
-        worst = max(worst, share * abs(own[i] - before[i]) / allowed)
+    for i in range(trial.shape[1]):
+        allowed = settings.angle_error + settings.relative_error * abs(trial[Q, i])
+        worst = max(worst, share * abs(trial[OWN, i] - before[OWN, i]) / allowed)
     return worst
 
 
-@uncounted()
+@inner()
 def _move(coordinates: Array, counts: IntArray, rung: int) -> None:
     """Count steps of h/2^rung from here on; a stays ahead of q̈ by the same share of a step."""
     share = 0.5 ** (rung - counts[Count.RUNG])
     for i in range(coordinates.shape[1]):
-        coordinates[3, i] = coordinates[2, i] + share * (coordinates[3, i] - coordinates[2, i])
+        ahead = coordinates[OWN, i] - coordinates[ACCELERATION, i]
+        coordinates[OWN, i] = coordinates[ACCELERATION, i] + share * ahead
     counts[Count.RUNG], counts[Count.PATIENCE] = rung, 0
 
 
-@uncounted()
-def _withdraw(side: Array, state: State, bent: Bent, speeds: Array) -> None:
+@inner()
+def _withdraw(sides: Array, state: State, bent: Bent, speeds: Array) -> None:
     """Put back what a step that is not taken has changed."""
     for i in range(state.sense.size):
-        bent.facing[i] = state.sense[i] * side[i]
-    for l in range(bent.torque.size):
-        bent.torque[l], bent.memory[l], bent.load[l] = state.law[0, l], state.law[1, l], state.law[2, l]
-    speeds[1], speeds[2], speeds[3] = state.reference[2], state.reference[0], state.reference[1]
+        bent.hinges[FACING, i] = state.sense[i] * sides[i]
+    for row in range(LOAD + 1):
+        for l in range(bent.laws.shape[1]):
+            bent.laws[row, l] = state.law[row, l]
+    for place in range(FRAME + 1):
+        speeds[place] = state.reference[place]
     state.counts[Count.REJECTED] += 1
 
 
@@ -122,26 +136,24 @@ def run(
 
     A base step is as many smaller ones as the error asks for, counted in ticks of the smallest.
     """
-    n, tick, ticks, counts, built = 0, 0, 1 << settings.rungs, state.counts, -1
-    m = rung_of(method, h)
-    k = record(plan.constants, plan.masses, plan.hinges, plan.laws.of, state, h, records, at, 0, n)
+    masses, constants, hinges, fill, law_places = plan.masses, plan.constants, plan.hinges, plan.fill, plan.laws.places
+    begin, q, counts, trial = state.begin[0], state.coordinates, state.counts, w.trial
+    now, bent, speeds = w.now, w.bent, w.driving.speeds
+    n, tick, ticks, built, m, steady = 0, 0, 1 << settings.rungs, -1, rung_of(method, h), w.solver.matrix[STEADY]
+    k = record(constants, masses, hinges, law_places, state, h, records, at, 0, n)
     while n < steps:
         rung = counts[Count.RUNG]
         if rung != built:
             m, built = rung_of(method, h * 0.5**rung), rung
-            squared, now, solver = w.driving.speeds[3], w.now, w.solver
-            guard, hinges = settings.guard, plan.hinges
-            begin_rung(plan.masses, plan.constants, hinges, plan.steady, now, w.bent, solver, squared, m, guard)
+            begin_rung(masses, constants, hinges, fill, now, bent.hinges, steady, speeds, m, settings.guard)
         wide = ticks >> rung
-        status = settle(
-            plan, state, w, m, settings, state.begin[0] + (counts[Count.BASE_STEPS] + (tick + wide) / ticks) * h
-        )
+        status = settle(plan, state, w, m, settings, begin + (counts[Count.BASE_STEPS] + (tick + wide) / ticks) * h)
         error = 0.0
         if settings.rungs > 0:
-            error = _error(w.trial.own, w.trial.q, state.coordinates[3], m, settings)
+            error = _error(trial, q, m, settings)
             if (status != Status.DONE or not error <= 1.0) and rung < settings.rungs:
-                _withdraw(plan.hinges.side, state, w.bent, w.driving.speeds)
-                _move(state.coordinates, counts, rung + 1)
+                _withdraw(hinges.values[SIDE], state, bent, speeds)
+                _move(q, counts, rung + 1)
                 continue
         if status != Status.DONE:
             return status
@@ -149,26 +161,26 @@ def run(
         tick += wide
         counts[Count.PATIENCE] = counts[Count.PATIENCE] + 1 if rung > 0 and error < ROOM else 0
         if rung > 0 and counts[Count.PATIENCE] >= PATIENCE and tick % (2 * wide) == 0:
-            _move(state.coordinates, counts, rung - 1)
+            _move(q, counts, rung - 1)
         if tick == ticks:
             tick, n = 0, n + 1
             counts[Count.BASE_STEPS] += 1
-            k = record(plan.constants, plan.masses, plan.hinges, plan.laws.of, state, h, records, at, k, n)
+            k = record(constants, masses, hinges, law_places, state, h, records, at, k, n)
     return Status.DONE
 
 
-@uncounted()
+@inner()
 def _put(values: Array, out: Array) -> None:
     for i in range(values.size):
         out[i] = values[i]
 
 
-@uncounted()
+@inner()
 def record(
-    constants: Constants,
+    constants: Array,
     masses: Masses,
     hinges: HingeRows,
-    law_of: PlaceArray,
+    law_places: IntArray,
     state: State,
     h: float,
     records: Records,
@@ -180,15 +192,15 @@ def record(
     while k < at.size and at[k] == n:
         stored(constants, masses, hinges, state)
         records.time[k] = state.begin[0] + state.counts[Count.BASE_STEPS] * h
-        _put(state.coordinates[0], records.q[k])
-        _put(state.coordinates[1], records.v[k])
-        _put(state.coordinates[2], records.acceleration[k])
-        _put(state.connection[0], records.twist[k])
-        _put(state.connection[2], records.torque[k])
+        _put(state.coordinates[Q], records.motion[0, k])
+        _put(state.coordinates[V], records.motion[1, k])
+        _put(state.coordinates[ACCELERATION], records.motion[2, k])
+        _put(state.connection[TWIST], records.connection[0, k])
+        _put(state.connection[TORQUE], records.connection[1, k])
         _put(state.ledger, records.ledger[k])
-        for l in range(law_of.size):
-            records.torque[k, law_of[l]] += state.law[0, l]
-            records.memory[k, l], records.load[k, l] = state.law[1, l], state.law[2, l]
-            records.lost[k, l] = state.passed[3, law_of[l]]
+        for l in range(law_places.shape[1]):
+            records.connection[1, k, law_places[LAW_OF, l]] += state.law[LAW_TORQUE, l]
+            records.law[0, k, l], records.law[1, k, l] = state.law[MEMORY, l], state.law[LOAD, l]
+            records.law[2, k, l] = state.connection[LOST, law_places[LAW_OF, l]]
         k += 1
     return k

@@ -10,108 +10,89 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.sparse_factor import PlaceArray, Tape, places, tape_of
-from torsional.numerics.stepping_data import Driven, Equations, Governed, Rows
+from torsional.numerics.stepping_data import Connected, Equations, Rows
+from torsional.numerics.stepping_tables import Outside, outside_of
+
+LEFT, RIGHT = range(2)
+"""Rows of ``ends``; LEFT is also that of a coordinate or connection in ``extra_at``, RIGHT that of its coordinate."""
+SPRING, DAMPER, CENTRIFUGAL, FOLLOW, MEAN_RATE = range(5)
+"""Rows of ``constants`` (5, E): what `Connected` tells of each connection."""
+GAP, SIDE, CHANGE, CONTACT_TIME, PACE = range(5)
+"""Rows of the hinges' ``values``."""
+LAW_OF, ADDRESS, REMEMBERS, START, STOP, LOAD_AT, LOAD_LEVEL, SHARES_START, SHARES_STOP = range(9)
+"""Rows of the laws' ``places``: connection, kernel, memory, ``values``, place of the load there or −1, level and
+``shares`` of the load."""
+LOAD_CONSTANT, LOAD_SQUARED = range(2)
+"""Rows of the laws' ``loads``: that part of the load which follows a level, and that which follows Ω²."""
+ROW, SLOT = range(2)
+"""Rows of a fill's ``at``."""
 
 
 class Pairs(NamedTuple):
-    """Rows w_e (E,) as first x[left] + second x[right], and what is beyond two coordinates one entry at a time."""
+    """Rows w_e (E,) as weights of two coordinates each, (2, E), and what is beyond two one entry at a time: connection
+    and coordinate ``extra_at`` (2, X)."""
 
-    left: PlaceArray
-    right: PlaceArray
-    first: Array
-    second: Array
-    extra_row: PlaceArray
-    extra_column: PlaceArray
-    extra_weight: Array
+    ends: PlaceArray
+    weights: Array
+    extra_at: PlaceArray
+    extra: Array
 
 
 class Masses(NamedTuple):
-    """M as its diagonal (n,) and entries above it; ``slots`` are its values in the flat step matrix."""
+    """M as its diagonal (n,) and entries ``above`` it at rows and columns ``above_at``; ``slots`` are its values in the
+    flat step matrix."""
 
     diagonal: Array
-    above_row: PlaceArray
-    above_column: PlaceArray
+    above_at: PlaceArray
     above: Array
     slots: Array
 
 
 class HingeRows(NamedTuple):
-    """Hinges (H,) of connections ``of``; ``pace`` = sqrt(Δk wᵀM⁻¹w) [rad/s] is that of the contact alone."""
+    """Hinges (H,) of connections ``of``, ``values`` (5, H); PACE = sqrt(Δk wᵀM⁻¹w) [rad/s] is that of the contact
+    alone."""
 
     of: PlaceArray
-    gap: Array
-    side: Array
-    change: Array
-    contact_time: Array
-    pace: Array
+    values: Array
 
 
 class Laws(NamedTuple):
-    """Laws (L,) by address on connections ``of``; values ``start`` to ``stop``, normal load at ``load_at`` or −1."""
+    """Laws (L,) by address: ``places`` (9, L), their ``values`` end to end, ``loads`` (2, L), and the connections with
+    the ``shares`` of their torques that a load follows."""
 
-    of: PlaceArray
-    address: IntArray
-    remembers: IntArray
-    start: IntArray
-    stop: IntArray
+    places: IntArray
     values: Array
-    load_at: IntArray
+    loads: Array
+    load_of: PlaceArray
+    shares: Array
 
-
-class Constants(NamedTuple):
-    """What `Connected` tells of each connection (E,)."""
-
-    stiffness: Array
-    damping: Array
-    centrifugal: Array
-    follow: Array
-    mean_rate: Array
-
-
-class Loads(NamedTuple):
-    """What `Connected` tells of the normal load of each connection."""
-
-    constant: Array
-    level: IntArray
-    centrifugal: Array
-    start: IntArray
-    of: IntArray
-    share: Array
-
-
-class Outside(NamedTuple):
-    """What acts from outside, and what rotations count from."""
-
-    driven: Driven
-    governed: Governed
-    reference: Rows
-    reference_time: float
-    frame_time: Array
-    frame_value: Array
+    @property
+    def of(self) -> IntArray:
+        """Their connections."""
+        return np.asarray(self.places[LAW_OF])
 
 
 class Fill(NamedTuple):
-    """Entries weight · value[row] that are added to slots of the step matrix."""
+    """Entries weight · value[ROW] that are added to slots of the step matrix, (2, K) and (K,): first those of
+    ``steady`` connections, which never change their tangent, up to ``bent`` those of the others, then cranks'."""
 
-    row: PlaceArray
-    slot: PlaceArray
+    at: PlaceArray
     weight: Array
+    steady: int
+    bent: int
 
 
 class Plan(NamedTuple):
-    """Everything about a system that steps of any length share; ``steady`` connections never change their tangent."""
+    """Everything about a system that steps of any length share."""
 
     tape: Tape
     outside: Outside
-    constants: Constants
-    loads: Loads
+    constants: Array
     masses: Masses
     pairs: Pairs
     hinges: HingeRows
     laws: Laws
-    steady: Fill
-    bent: Fill
-    cranks: Fill
+    fill: Fill
     moving: bool  # a damper or law counts from a rotation of its own
     spinning: bool  # stiffness or a normal load changes with speed
 
@@ -124,28 +105,27 @@ def prepare(equations: Equations) -> Plan:
     found = [support(rows) for rows in (equations.mass_rows, connected.rows, equations.driven.crank_rows)]
     tape = tape_of([one for group in found for one in group if len(one) > 1], n)
     slot = _slots(tape)
-    counts = np.diff(connected.hinge_start)
+    counts, cranks = np.diff(connected.hinge_start), equations.driven.crank_rows
     bends = (counts > 0) | (connected.address != 0) | (connected.centrifugal != 0.0)
     return Plan(
         tape=tape,
-        outside=_outside(equations),
-        constants=Constants(*(getattr(connected, name) for name in Constants._fields)),
-        loads=Loads(*(getattr(connected, f"load_{name}") for name in Loads._fields)),
+        outside=outside_of(equations),
+        constants=np.array([getattr(connected, name) for name in _CONSTANTS]),
         masses=_masses(M, tape),
         pairs=_pairs(connected.rows),
         hinges=_hinges(equations, M, counts),
-        laws=_laws(equations),
-        steady=_fill(connected.rows, np.flatnonzero(~bends), slot),
-        bent=_fill(connected.rows, np.flatnonzero(bends), slot),
-        cranks=_fill(equations.driven.crank_rows, np.arange(len(found[2])), slot),
+        laws=_laws(connected),
+        fill=_filled(
+            _entries(connected.rows, np.flatnonzero(~bends), slot),
+            _entries(connected.rows, np.flatnonzero(bends), slot),
+            _entries(cranks, np.arange(len(found[2])), slot),
+        ),
         moving=bool((connected.follow.any() and np.isfinite(equations.reference_time)) or connected.mean_rate.any()),
         spinning=bool(connected.centrifugal.any() or (connected.load_place >= 0).any()),
     )
 
 
-def _outside(equations: Equations) -> Outside:
-    e = equations
-    return Outside(e.driven, e.governed, e.reference, float(e.reference_time), e.frame_time, e.frame_value)
+_CONSTANTS = ("stiffness", "damping", "centrifugal", "follow", "mean_rate")
 
 
 def support(rows: Rows) -> list[set[int]]:
@@ -169,7 +149,8 @@ def mass_matrix(equations: Equations) -> Array:
 def matrix_of(masses: Masses) -> Array:
     """M (n, n) again."""
     M = np.diag(masses.diagonal)
-    M[masses.above_row, masses.above_column] = M[masses.above_column, masses.above_row] = masses.above
+    row, column = masses.above_at
+    M[row, column] = M[column, row] = masses.above
     return M
 
 
@@ -194,7 +175,7 @@ def _slots(tape: Tape) -> dict[tuple[int, int], int]:
     """Slots by pairs of coordinates, either way round."""
     node, n = tape.node.tolist(), tape.node.size
     found = {(i, i): p for p, i in enumerate(node)}
-    for c, (p, r) in enumerate(zip(tape.column.tolist(), tape.row.tolist(), strict=True)):
+    for c, (p, r) in enumerate(tape.couplings.T.tolist()):
         found[node[p], node[r]] = found[node[r], node[p]] = n + c
     return found
 
@@ -202,8 +183,8 @@ def _slots(tape: Tape) -> dict[tuple[int, int], int]:
 def _masses(M: Array, tape: Tape) -> Masses:
     row, column = np.nonzero(np.triu(M, 1))
     node = tape.node
-    slots = np.append(np.diag(M)[node], M[node[tape.column], node[tape.row]])
-    return Masses(np.diag(M).copy(), places(row), places(column), M[row, column], slots)
+    slots = np.append(np.diag(M)[node], M[tuple(node[tape.couplings])])
+    return Masses(np.diag(M).copy(), np.array([row, column], dtype=np.uint32), M[row, column], slots)
 
 
 def _pairs(rows: Rows) -> Pairs:
@@ -216,9 +197,8 @@ def _pairs(rows: Rows) -> Pairs:
                 ends[k, e], weights[k, e] = column, weight
             else:
                 extra.append((e, int(column), float(weight)))
-    row, column = places(i for i, _, _ in extra), places(j for _, j, _ in extra)
-    more = np.array([w for _, _, w in extra], dtype=float)
-    return Pairs(ends[0], ends[1], weights[0], weights[1], row, column, more)
+    at = np.array([places(i for i, _, _ in extra), places(j for _, j, _ in extra)])
+    return Pairs(ends, weights, at, np.array([w for _, _, w in extra], dtype=float))
 
 
 def _hinges(equations: Equations, M: Array, counts: IntArray) -> HingeRows:
@@ -228,30 +208,34 @@ def _hinges(equations: Equations, M: Array, counts: IntArray) -> HingeRows:
     heavy = M + np.diag(np.where(np.diag(M) > 0.0, 0.0, 1e-12 * max(np.abs(M).max(), 1e-300)))
     mobility = np.einsum("ei,ie->e", w, np.linalg.solve(heavy, w.T))[of]
     pace = np.sqrt(np.maximum(connected.change * mobility, 0.0))
-    return HingeRows(places(of), connected.gap, connected.side, connected.change, connected.contact_time, pace)
+    values = (connected.gap, connected.side, connected.change, connected.contact_time, pace)
+    return HingeRows(places(of), np.array(values))
 
 
-def _laws(equations: Equations) -> Laws:
-    connected = equations.connected
-    of = np.flatnonzero(connected.address)
-    load = connected.load_place[of]
-    return Laws(
-        places(of),
-        connected.address[of],
-        connected.remembers[of],
-        connected.law_start[of],
-        connected.law_start[of + 1],
-        connected.law_values,
-        np.where(load >= 0, connected.law_start[of] + load, -1),
-    )
+def _laws(connected: Connected) -> Laws:
+    c, of = connected, np.flatnonzero(connected.address)
+    load, start = c.load_place[of], c.law_start[of]
+    at = np.where(load >= 0, start + load, -1)
+    shares = c.load_start[of], c.load_start[of + 1]
+    table = (of, c.address[of], c.remembers[of], start, c.law_start[of + 1], at, c.load_level[of], *shares)
+    loads = np.array([c.load_constant[of], c.load_centrifugal[of]])
+    return Laws(np.array(table, dtype=np.int64), c.law_values, loads, places(c.load_of), c.load_share)
 
 
-def _fill(rows: Rows, chosen: Iterable[int], slot: Mapping[tuple[int, int], int]) -> Fill:
-    """The entries of w wᵀ of the chosen rows, those off the diagonal once."""
+Entries = Sequence[tuple[int, int, float]]
+
+
+def _entries(rows: Rows, chosen: Iterable[int], slot: Mapping[tuple[int, int], int]) -> Entries:
+    """Row, slot and weight of the entries of w wᵀ of the chosen rows, those off the diagonal once."""
     entries: list[tuple[int, int, float]] = []
     for e in chosen:
         a, b = rows.start[e], rows.start[e + 1]
         own: Sequence[tuple[int, float]] = list(zip(rows.column[a:b].tolist(), rows.weight[a:b].tolist(), strict=True))
         entries += [(int(e), slot[i, j], u * v) for k, (i, u) in enumerate(own) for j, v in own[k:]]
-    weight = np.array([w for _, _, w in entries], dtype=float)
-    return Fill(places(e for e, _, _ in entries), places(s for _, s, _ in entries), weight)
+    return entries
+
+
+def _filled(steady: Entries, bent: Entries, cranks: Entries) -> Fill:
+    entries = [*steady, *bent, *cranks]
+    at = np.array([places(e for e, _, _ in entries), places(s for _, s, _ in entries)])
+    return Fill(at, np.array([w for _, _, w in entries], dtype=float), len(steady), len(steady) + len(bent))

@@ -3,12 +3,54 @@
 
 from __future__ import annotations
 
-from torsional.numerics.sources import row_product
-from torsional.numerics.stepping_forces import bend, disagreeing, drags, gather, press, torques, turn
-from torsional.numerics.stepping_plan import Laws, Loads, Plan
-from torsional.numerics.stepping_state import Count, Settings, State, Status
-from torsional.numerics.stepping_step import Method, Work, drive, predict, refactor, retangent, solve, spread
-from torsional.numerics.uncounted import inlined, uncounted
+from torsional.numerics.arrays import Array
+from torsional.numerics.stepping_forces import (
+    BUILT,
+    SLOPE,
+    Bent,
+    bend,
+    disagreeing,
+    drags,
+    gather,
+    press,
+    torques,
+    turn,
+)
+from torsional.numerics.stepping_plan import Laws, Plan
+from torsional.numerics.stepping_state import (
+    ACCELERATION,
+    DELTA,
+    EXTERNAL,
+    LAW_TORQUE,
+    MEMORY,
+    OFFSET,
+    OWN,
+    RATE,
+    SQUARED,
+    TORQUE,
+    TWIST,
+    Count,
+    Q,
+    Settings,
+    State,
+    Status,
+    V,
+)
+from torsional.numerics.stepping_step import (
+    BUILT_FOR,
+    HEAVY,
+    VALID,
+    Method,
+    Work,
+    drive,
+    predict,
+    refactor,
+    retangent,
+    rotate,
+    solve,
+    swing,
+)
+from torsional.numerics.uncounted import inlined, inner
 
 STRIKES = 3
 """Passes in which no fewer hinges disagree before they are turned one by one, which always ends."""
@@ -17,30 +59,35 @@ STRIKES = 3
 @inlined()
 def settle(plan: Plan, state: State, w: Work, m: Method, settings: Settings, t: float) -> int:
     """The motion at the end t of a step into the trial of ``w``; a `Status`, and what it took into the counters."""
-    trial, now, counts = w.trial, w.now, state.counts
-    predict(state, trial, m)
-    drive(plan, state, w, t, m.h)
-    gather(plan.pairs, trial.q, now.twist)
-    gather(plan.pairs, trial.v, now.rate)
-    if plan.moving:
-        for e in range(now.rate.size):
-            now.rate[e] += now.offset[e]
-    if plan.spinning and w.driving.speeds[3] != w.solver.built[1]:
-        retangent(plan.constants, plan.hinges, now, w.bent, w.solver, w.driving.speeds[3], m)
+    outside, constants, hinges, pairs, laws = plan.outside, plan.constants, plan.hinges, plan.pairs, plan.laws
+    trial, now, driving, bent, moving, spinning = w.trial, w.now, w.driving, w.bent, plan.moving, plan.spinning
+    q, before, memory, counts = state.coordinates, state.connection, state.law[MEMORY], state.counts
+    integral, reference, rows, first = state.integral, state.reference, outside.rows, outside.crank_row
+    speeds = driving.speeds
+    predict(q, trial, m)
+    drive(outside, q[V], integral, driving, trial, t, m.h)
+    if moving or spinning:
+        rotate(outside, constants, laws.places, q[V], trial[V], reference, speeds, now, bent.laws, t, m.h)
+    gather(pairs, trial[Q], now[TWIST])
+    gather(pairs, trial[V], now[RATE])
+    if moving:
+        for e in range(now.shape[1]):
+            now[RATE, e] += now[OFFSET, e]
+    if spinning and speeds[SQUARED] != speeds[BUILT_FOR]:
+        retangent(constants, hinges, now, bent.hinges, speeds, m)
     torques(now)
-    if w.bent.torque.size:
-        drags(plan.laws, w.bent, state.connection, state.law[1])
-        _laws(plan.loads, plan.laws, state, w, m, 0)
-    if w.driving.crank_inertia.size:
-        w.solver.built[0] = 0.0
+    if bent.laws.shape[1]:
+        drags(laws.places, bent, before, memory)
+        bend_all(laws, before, memory, now, bent, speeds, m, 0)
+    if driving.cranks.shape[1]:
+        speeds[VALID] = 0.0
     status = _passes(plan, state, w, m, settings)
-    for i in range(trial.q.size):
-        trial.q[i] += m.by_angle * trial.delta[i]
-        trial.v[i] += m.by_rate * trial.delta[i]
-        trial.own[i] += trial.delta[i]
-    rows = plan.outside.driven.crank_rows
-    for k in range(w.driving.crank_inertia.size):
-        spread(rows, k, -w.driving.crank_inertia[k] * row_product(rows, k, trial.acceleration), trial.external)
+    for i in range(trial.shape[1]):
+        trial[Q, i] += m.by_angle * trial[DELTA, i]
+        trial[V, i] += m.by_rate * trial[DELTA, i]
+        trial[OWN, i] += trial[DELTA, i]
+    if driving.cranks.shape[1]:
+        swing(rows, first, driving.cranks[HEAVY], trial[ACCELERATION], trial[EXTERNAL])
     counts[Count.STEPS] += 1
     return status
 
@@ -48,50 +95,54 @@ def settle(plan: Plan, state: State, w: Work, m: Method, settings: Settings, t: 
 @inlined()
 def _passes(plan: Plan, state: State, w: Work, m: Method, settings: Settings) -> int:
     """Solve until nothing changes."""
-    fewest, strikes, counts = plan.hinges.of.size + 1, STRIKES, state.counts
-    for n in range(1, settings.passes + 1 + 4 * plan.hinges.of.size):
-        if w.solver.built[0] == 0.0:
+    hinges, laws, tape, fill, constants = plan.hinges, plan.laws, plan.tape, plan.fill, plan.constants
+    now, bent, speeds, inertia, solver = w.now, w.bent, w.driving.speeds, w.driving.cranks[HEAVY], w.solver
+    before, memory, counts, agreement = state.connection, state.law[MEMORY], state.counts, settings.agreement
+    fewest, strikes, most = hinges.of.size + 1, STRIKES, settings.passes + 1 + 4 * hinges.of.size
+    for n in range(1, most):
+        if speeds[VALID] == 0.0:
             counts[Count.FACTORS] += 1
-            inertia = w.driving.crank_inertia
-            if not refactor(plan.tape, plan.laws, plan.bent, plan.cranks, w.now, w.bent, w.solver, inertia, m.mu):
+            speeds[VALID] = 1.0
+            if not refactor(tape, laws.places, fill, now, bent.laws, solver, inertia, m.mu):
                 return Status.INDEFINITE
         solve(plan, w, m)
         counts[Count.SOLVES] += 1
-        wrong = disagreeing(plan.hinges, w.bent, w.now)
+        wrong = disagreeing(hinges, bent.hinges, now)
         off = 0.0
         if wrong:
             strikes = STRIKES if wrong < fewest else strikes - 1
             fewest = min(fewest, wrong)
             counts[Count.FALLBACKS] += strikes < 0
-            turn(plan.hinges, w.bent, w.now, strikes < 0)
-            retangent(plan.constants, plan.hinges, w.now, w.bent, w.solver, w.driving.speeds[3], m)
-            torques(w.now)
-        if w.bent.torque.size:
-            off = _laws(plan.loads, plan.laws, state, w, m, n)
-        if not wrong and off <= settings.agreement * _largest(w):
+            turn(hinges, bent.hinges, now, strikes < 0)
+            retangent(constants, hinges, now, bent.hinges, speeds, m)
+            torques(now)
+        if bent.laws.shape[1]:
+            off = bend_all(laws, before, memory, now, bent, speeds, m, n)
+        if not wrong and off <= agreement * _largest(now, bent.laws):
             return Status.DONE
     return Status.UNSETTLED
 
 
-@uncounted()
-def _laws(loads: Loads, laws: Laws, state: State, w: Work, m: Method, n: int) -> float:
+@inner()
+def bend_all(
+    laws: Laws, before: Array, memory: Array, now: Array, bent: Bent, speeds: Array, m: Method, n: int
+) -> float:
     """Torques, tangents and normal loads of the laws at the motion of now; how far off they were [Nm]."""
-    press(loads, laws, w.now, w.bent, w.driving.speeds[3], w.driving.levels)
-    steps = (m.by_angle, m.by_rate)
-    off = bend(laws, w.now, w.bent, state.connection, state.law[1], m.h, steps, n)
-    for l in range(w.bent.slope.size):
-        if w.bent.slope[l] != w.bent.built[l]:
-            w.solver.built[0] = 0.0
+    press(laws, now, bent, speeds[SQUARED])
+    off, own = bend(laws, now, bent, before, memory, m.h, (m.by_angle, m.by_rate), n), bent.laws
+    for l in range(own.shape[1]):
+        if own[SLOPE, l] != own[BUILT, l]:
+            speeds[VALID] = 0.0
     return off
 
 
 @inlined()
-def _largest(w: Work) -> float:
+def _largest(now: Array, laws: Array) -> float:
     """The largest torque of a connection or law [Nm], where there are laws."""
     largest = 1e-300
-    if w.bent.torque.size:
-        for e in range(w.now.torque.size):
-            largest = max(largest, abs(w.now.torque[e]))
-        for l in range(w.bent.torque.size):
-            largest = max(largest, abs(w.bent.torque[l]))
+    if laws.shape[1]:
+        for e in range(now.shape[1]):
+            largest = max(largest, abs(now[TORQUE, e]))
+        for l in range(laws.shape[1]):
+            largest = max(largest, abs(laws[LAW_TORQUE, l]))
     return largest

@@ -48,6 +48,16 @@ class Count(IntEnum):
     BUILT_RUNG = 8
 
 
+Q, V, ACCELERATION, OWN, EXTERNAL, INERTIAL, DELTA, ORDERED = range(8)
+"""Rows of ``coordinates``; the last two are those of a trial only."""
+TWIST, RATE, TORQUE, OFFSET, MADE, THROUGH, GUARDED, LOST = range(8)
+"""Rows of ``connection``."""
+LAW_TORQUE, MEMORY, LOAD, STRAIN, REST = range(5)
+"""Rows of ``law``."""
+TURNING, SQUARED, FRAME = range(3)
+"""Places in ``reference``."""
+
+
 class Settings(NamedTuple):
     """What a march is told beside its step.
 
@@ -69,22 +79,18 @@ class Settings(NamedTuple):
 class State(NamedTuple):
     """Where a march stands: copied by `march`, never changed in place.
 
-    ``coordinates`` (4, n): q [rad], q̇, q̈, and the method's own a. ``external`` and ``inertial`` (n,): torques of
-    all sources, and M q̈. ``connection`` (4, E): twist, rate, torque of spring, hinges and damper, and offset of the
-    rate. ``sense`` (H,): 1 closed, −1 open. ``law`` (5, L): torque, memory, normal load, strain energy, and its
-    elastic tangent or, without a memory, its torque at rest. ``passed`` (4, E): energy that the method made at each
-    connection, all that went through it, what contact times given by the guard took, and what its law lost.
-    ``integral`` (G,) of the governors. ``reference`` (3,): Ω_r [rad/s], Ω², the frame's speed. ``ledger`` by `Entry`,
-    ``counts`` by `Count`; ``begin`` (1,) is the time of base step 0 [s].
+    ``coordinates`` (6, n): q [rad], q̇, q̈, the method's own a, torques of all sources, and M q̈.  ``connection`` (8, E):
+    twist, rate, torque of spring, hinges and damper, offset of the rate, energy that the method made at it, all that
+    went through it, what contact times given by the guard took, and what its law lost.  ``sense`` (H,): 1 closed, −1
+    open.  ``law`` (5, L): torque, memory, normal load, strain energy, and its elastic tangent or, without a memory, its
+    torque at rest.  ``integral`` (G,) of the governors.  ``reference`` (3,): Ω_r [rad/s], Ω², the frame's speed.
+    ``ledger`` by `Entry`, ``counts`` by `Count`; ``begin`` (1,) is the time of base step 0 [s].
     """
 
     coordinates: Array
-    external: Array
-    inertial: Array
     connection: Array
     sense: Array
     law: Array
-    passed: Array
     integral: Array
     reference: Array
     ledger: Array
@@ -95,22 +101,62 @@ class State(NamedTuple):
         """The same in memory of its own."""
         return State._make(np.array(part) for part in self)
 
+    @property
+    def passed(self) -> Array:
+        """(4, E) [J]: what the method made at each connection, all that went through, losses to guard and law."""
+        return self.connection[MADE:]
+
 
 class Records(NamedTuple):
-    """What was recorded (R records): ``time`` (R,), ``q``, ``v``, ``acceleration`` (R, n), ``twist`` [rad] and
-    ``torque`` [Nm] (R, E), ``memory``, ``load`` and ``lost`` [J] (R, L) of the laws by address, ``ledger``
-    (R, entries)."""
+    """What was recorded (R records): ``time`` (R,), q, q̇ and q̈ as ``motion`` (3, R, n), twist [rad] and torque [Nm] as
+    ``connection`` (2, R, E), memory, load and loss [J] of the laws by address as
+    ``law`` (3, R, L), ``ledger`` (R, entries)."""
 
     time: Array
-    q: Array
-    v: Array
-    acceleration: Array
-    twist: Array
-    torque: Array
-    memory: Array
-    load: Array
-    lost: Array
+    motion: Array
+    connection: Array
+    law: Array
     ledger: Array
+
+    @property
+    def q(self) -> Array:
+        """Coordinates (R, n)."""
+        return np.asarray(self.motion[0])
+
+    @property
+    def v(self) -> Array:
+        """Their rates (R, n)."""
+        return np.asarray(self.motion[1])
+
+    @property
+    def acceleration(self) -> Array:
+        """Their accelerations (R, n)."""
+        return np.asarray(self.motion[2])
+
+    @property
+    def twist(self) -> Array:
+        """Angles of connections (R, E) [rad]."""
+        return np.asarray(self.connection[0])
+
+    @property
+    def torque(self) -> Array:
+        """Their torques (R, E) [Nm]."""
+        return np.asarray(self.connection[1])
+
+    @property
+    def memory(self) -> Array:
+        """Memories of laws (R, L)."""
+        return np.asarray(self.law[0])
+
+    @property
+    def load(self) -> Array:
+        """Their normal loads (R, L)."""
+        return np.asarray(self.law[1])
+
+    @property
+    def lost(self) -> Array:
+        """What they lost (R, L) [J]."""
+        return np.asarray(self.law[2])
 
 
 class March(NamedTuple):

@@ -12,22 +12,57 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.sparse_factor import Tape, factor, substitute
-from torsional.numerics.stepping_data import Driven, Governed, Rows
+from torsional.numerics.stepping_data import Rows
 from torsional.numerics.stepping_forces import (
+    BUILT,
+    DELAY,
+    LEVEL,
+    MOVED,
+    SHARE,
+    SLOPE,
+    STEP,
     Bent,
-    Connections,
     advance,
     gather,
     scatter,
     scatter_one,
     tangents,
 )
-from torsional.numerics.stepping_plan import Constants, Fill, HingeRows, Laws, Masses, Plan
-from torsional.numerics.stepping_state import State
-from torsional.numerics.uncounted import inlined, uncounted
+from torsional.numerics.stepping_plan import (
+    CONTACT_TIME,
+    FOLLOW,
+    LAW_OF,
+    LOAD_LEVEL,
+    MEAN_RATE,
+    PACE,
+    ROW,
+    SLOT,
+    Fill,
+    HingeRows,
+    Masses,
+    Plan,
+)
+from torsional.numerics.stepping_state import (
+    ACCELERATION,
+    DELTA,
+    EXTERNAL,
+    FRAME,
+    INERTIAL,
+    LAW_TORQUE,
+    OFFSET,
+    ORDERED,
+    OWN,
+    SQUARED,
+    TORQUE,
+    TURNING,
+    Q,
+    V,
+)
+from torsional.numerics.stepping_tables import Outside
+from torsional.numerics.uncounted import inlined, inner
 
 LONGEST = 1e300
 """Time constant [s] from which one is none."""
@@ -45,52 +80,43 @@ class Method(NamedTuple):
     h: float
 
 
-class Trial(NamedTuple):
-    """The motion while it is sought, by coordinate (n,): angles, rates, accelerations, the method's own, δ, sources,
-    torques still out of balance and the same in the order of elimination."""
-
-    q: Array
-    v: Array
-    acceleration: Array
-    own: Array
-    delta: Array
-    external: Array
-    left: Array
-    ordered: Array
+STEADY, MATRIX = range(2)
+"""Rows of the step matrix (2, slots): that of steady connections, the one in use."""
+GIVEN, EXTRA = range(2)
+"""Rows of ``sources``: torques, and what governors add to their levels."""
+HELD, GATHERED = range(2)
+"""Rows of ``governors``: torques and integrals."""
+PUSHED, HEAVY = range(2)
+"""Rows of ``cranks``: torque and inertia."""
+ANGLE, VALID, BUILT_FOR = range(3, 6)
+"""Places in ``speeds``, after those of `State.reference`: the frame's angle, whether there is a factor, and its Ω²."""
 
 
 class Solver(NamedTuple):
-    """The step matrix (slots,): that of steady connections, the one in use, its factor; what it was ``built`` for:
-    (valid, Ω²)."""
+    """The step ``matrix`` (2, slots) and its factor."""
 
-    steady: Array
     matrix: Array
     lower: Array
     inverse: Array
-    built: Array
 
 
 class Driving(NamedTuple):
-    """What drives a step: source torques (S,) and what governors add, governors' torques and integrals (G,), cranks'
-    (c,) torque and inertia, levels of normal loads (L,); ``speeds``: frame's angle and speed, Ω_r, Ω²."""
+    """What drives a step: ``sources`` (2, S), ``governors`` (2, G), ``cranks`` (2, c), ``speeds`` (6,)."""
 
-    torque: Array
-    extra: Array
-    governor: Array
-    integral: Array
-    crank_torque: Array
-    crank_inertia: Array
-    levels: Array
+    sources: Array
+    governors: Array
+    cranks: Array
     speeds: Array
 
 
 class Work(NamedTuple):
-    """All memory of a march."""
+    """All memory of a march: the motion while it is sought, ``trial`` (8, n), where INERTIAL is also what is still out
+    of balance and ORDERED the same in the order of elimination; ``now`` (10, E) and ``bent`` the connections."""
 
-    trial: Trial
+    trial: Array
     solver: Solver
     driving: Driving
-    now: Connections
+    now: Array
     bent: Bent
 
 
@@ -102,143 +128,125 @@ def spread(rows: Rows, i: int, torque: float, x: Array) -> None:
 
 
 @inlined()
-def predict(state: State, trial: Trial, m: Method) -> None:
+def predict(now: Array, trial: Array, m: Method) -> None:
     """The motion at the step's end if the accelerations stay."""
-    q, v, acceleration, own = state.coordinates
     first, second = m.h * m.h * (0.5 - m.beta), m.h * (1.0 - m.gamma)
-    for i in range(trial.q.size):
-        ahead = (acceleration[i] - m.alpha_m * own[i]) / (1.0 - m.alpha_m)
-        trial.own[i], trial.acceleration[i], trial.delta[i] = ahead, acceleration[i], 0.0
-        trial.q[i] = q[i] + m.h * v[i] + first * own[i] + m.by_angle * ahead
-        trial.v[i] = v[i] + second * own[i] + m.by_rate * ahead
+    for i in range(trial.shape[1]):
+        own = now[OWN, i]
+        ahead = (now[ACCELERATION, i] - m.alpha_m * own) / (1.0 - m.alpha_m)
+        trial[OWN, i], trial[ACCELERATION, i], trial[DELTA, i] = ahead, now[ACCELERATION, i], 0.0
+        trial[Q, i] = now[Q, i] + m.h * now[V, i] + first * own + m.by_angle * ahead
+        trial[V, i] = now[V, i] + second * own + m.by_rate * ahead
 
 
-@inlined()
-def drive(plan: Plan, state: State, w: Work, t: float, h: float) -> None:
-    """Sources, governors, cranks and the rotations at the end t of a step, at the motion that is predicted."""
-    outside, d, trial = plan.outside, w.driving, w.trial
-    before = d.speeds[1]
-    d.speeds[1], d.speeds[0] = frame_at(outside.frame_time, outside.frame_value, t)
-    for g in range(d.integral.size):
-        d.integral[g] = state.integral[g]
-    if d.governor.size:
-        _govern(outside.governed, outside.driven, d, state.coordinates[1], trial.v, before, t, h)
-    source_torques(outside.driven, t, d.speeds[0], trial.q, d.extra, d.torque)
-    for i in range(trial.external.size):
-        trial.external[i] = 0.0
-    for s in range(d.torque.size):
-        spread(outside.driven.rows, s, d.torque[s], trial.external)
-    for g in range(d.governor.size):
-        spread(outside.governed.act, g, d.governor[g], trial.external)
-    if d.crank_torque.size:
-        q, v = trial.q, trial.v
-        crank_terms(outside.driven, d.speeds[0], d.speeds[1], q, v, d.crank_torque, d.crank_inertia)
-        for k in range(d.crank_torque.size):
-            spread(outside.driven.crank_rows, k, d.crank_torque[k], trial.external)
-    if plan.moving or plan.spinning:
-        _rotate(
-            outside.reference, outside.reference_time, plan.constants, state, trial.v, w.now.offset, d.speeds, h, before
-        )
-        for l in range(d.levels.size):
-            place, driven = plan.loads.level[plan.laws.of[l]], outside.driven
-            d.levels[l] = level_at(driven.level_start, driven.level_time, driven.level_value, place, t)
+@inner()
+def drive(outside: Outside, v: Array, integral: Array, d: Driving, trial: Array, t: float, h: float) -> None:
+    """Torques of sources, governors and cranks at the end t of a step, at the motion that is predicted."""
+    rows, external, sources, before = outside.rows, trial[EXTERNAL], d.sources, d.speeds[FRAME]
+    d.speeds[FRAME], d.speeds[ANGLE] = frame_at(outside.knots, outside.frame, t)
+    for i in range(external.size):
+        external[i] = 0.0
+    for g in range(d.governors.shape[1]):
+        d.governors[GATHERED, g] = integral[g]
+    if d.governors.shape[1]:
+        _govern(outside, d, v, trial[V], before, t, h)
+    source_torques(outside, t, d.speeds[ANGLE], trial[Q], sources[EXTRA], sources[GIVEN])
+    for s in range(sources.shape[1]):
+        spread(rows, s, sources[GIVEN, s], external)
+    for g in range(d.governors.shape[1]):
+        spread(rows, outside.act + g, d.governors[HELD, g], external)
+    if d.cranks.shape[1]:
+        crank_terms(outside, d.speeds[ANGLE], d.speeds[FRAME], trial[Q], trial[V], d.cranks[PUSHED], d.cranks[HEAVY])
+        for k in range(d.cranks.shape[1]):
+            spread(rows, outside.crank_row + k, d.cranks[PUSHED, k], external)
 
 
-@uncounted()
-def _govern(
-    governed: Governed, driven: Driven, d: Driving, v: Array, v_end: Array, before: float, t: float, h: float
-) -> None:
-    """Governors at the end t of a step, with the mean of their errors at both ends added up."""
-    govern(governed, driven, t - h, 0.5 * h, before, v, d.integral, d.governor, d.extra)
-    govern(governed, driven, t, 0.5 * h, d.speeds[1], v_end, d.integral, d.governor, d.extra)
-    govern(governed, driven, t, 0.0, d.speeds[1], v_end, d.integral, d.governor, d.extra)
-
-
-@uncounted()
-def _rotate(
-    reference: Rows,
-    time: float,
-    constants: Constants,
-    state: State,
+@inner()
+def rotate(
+    outside: Outside,
+    constants: Array,
+    law_places: IntArray,
     v: Array,
-    offset: Array,
+    v_end: Array,
+    reference: Array,
     speeds: Array,
+    now: Array,
+    laws: Array,
+    t: float,
     h: float,
-    before: float,
 ) -> None:
-    """Ω², the reference rotation, which follows Ω with a constant of ``time``, and with it the offsets of rates."""
-    speed = row_product(reference, 0, v) + speeds[1]
-    mean = 0.5 * (speed + row_product(reference, 0, state.coordinates[1]) + before)
-    speeds[2], speeds[3] = speeds[1], speed * speed
-    if time < LONGEST:
-        speeds[2] = mean + (state.reference[0] - mean) * math.exp(-h / time)
-    for e in range(offset.size):
-        offset[e] = constants.mean_rate[e] * speeds[1] - constants.follow[e] * (speeds[2] - speeds[1])
+    """Ω², the reference rotation, which follows Ω from ``reference`` on, offsets of rates and levels of loads at t."""
+    speed = row_product(outside.rows, outside.reference, v_end) + speeds[FRAME]
+    mean = 0.5 * (speed + row_product(outside.rows, outside.reference, v) + reference[FRAME])
+    speeds[TURNING], speeds[SQUARED] = speeds[FRAME], speed * speed
+    if outside.reference_time < LONGEST:
+        speeds[TURNING] = mean + (reference[TURNING] - mean) * math.exp(-h / outside.reference_time)
+    for e in range(now.shape[1]):
+        turned = constants[FOLLOW, e] * (speeds[TURNING] - speeds[FRAME])
+        now[OFFSET, e] = constants[MEAN_RATE, e] * speeds[FRAME] - turned
+    for l in range(laws.shape[1]):
+        laws[LEVEL, l] = level_at(outside.level_start, outside.knots, law_places[LOAD_LEVEL, l], t)
 
 
-@inlined()
-def _add(fill: Fill, value: Array, matrix: Array) -> None:
-    for k in range(fill.row.size):
-        matrix[fill.slot[k]] += fill.weight[k] * value[fill.row[k]]
+@inner()
+def _govern(outside: Outside, d: Driving, v: Array, v_end: Array, before: float, t: float, h: float) -> None:
+    """Governors at the end t of a step, with the mean of their errors at both ends added up."""
+    held, integral, extra, frame = d.governors[HELD], d.governors[GATHERED], d.sources[EXTRA], d.speeds[FRAME]
+    govern(outside, t - h, 0.5 * h, before, v, integral, held, extra)
+    govern(outside, t, 0.5 * h, frame, v_end, integral, held, extra)
+    govern(outside, t, 0.0, frame, v_end, integral, held, extra)
 
 
-@uncounted()
+@inner()
 def begin_rung(
     masses: Masses,
-    constants: Constants,
+    constants: Array,
     hinges: HingeRows,
-    steady: Fill,
-    now: Connections,
-    bent: Bent,
-    solver: Solver,
-    squared: float,
+    fill: Fill,
+    now: Array,
+    bent: Array,
+    steady: Array,
+    speeds: Array,
     m: Method,
     guard: bool,
 ) -> None:
-    """The steady part of the step matrix, and contact times under the guard, for another step."""
+    """The ``steady`` part of the step matrix, and contact times under the guard, for another step."""
     for i in range(hinges.of.size):
-        stiff = guard and m.h * hinges.pace[i] > 0.5
-        bent.contact_time[i] = max(hinges.contact_time[i], 0.5 * m.h) if stiff else hinges.contact_time[i]
-    retangent(constants, hinges, now, bent, solver, squared, m)
-    for k in range(solver.steady.size):
-        solver.steady[k] = m.mu * masses.slots[k]
-    _add(steady, now.step, solver.steady)
+        own = hinges.values[CONTACT_TIME, i]
+        stiff = guard and m.h * hinges.values[PACE, i] > 0.5
+        bent[DELAY, i] = max(own, 0.5 * m.h) if stiff else own
+    retangent(constants, hinges, now, bent, speeds, m)
+    for k in range(steady.size):
+        steady[k] = m.mu * masses.slots[k]
+    for k in range(fill.steady):
+        steady[fill.at[SLOT, k]] += fill.weight[k] * now[STEP, fill.at[ROW, k]]
 
 
-@uncounted()
-def retangent(
-    constants: Constants, hinges: HingeRows, now: Connections, bent: Bent, solver: Solver, squared: float, m: Method
-) -> None:
-    """Tangents of the hinges that are closed, at Ω² = ``squared``; the factor is out of date."""
-    tangents(constants, hinges, now, bent, squared, m.by_angle, m.by_rate)
-    solver.built[0], solver.built[1] = 0.0, squared
+@inner()
+def retangent(constants: Array, hinges: HingeRows, now: Array, bent: Array, speeds: Array, m: Method) -> None:
+    """Tangents of the hinges that are closed, at the Ω² of now; the factor is out of date."""
+    tangents(constants, hinges, now, bent, speeds[SQUARED], m.by_angle, m.by_rate)
+    speeds[VALID], speeds[BUILT_FOR] = 0.0, speeds[SQUARED]
 
 
-@uncounted()
+@inner()
 def refactor(
-    tape: Tape,
-    laws: Laws,
-    fill: Fill,
-    cranks: Fill,
-    now: Connections,
-    bent: Bent,
-    solver: Solver,
-    inertia: Array,
-    mu: float,
+    tape: Tape, law_places: IntArray, fill: Fill, now: Array, laws: Array, solver: Solver, inertia: Array, mu: float
 ) -> bool:
     """The step matrix of now and its factor; False where it is not positive definite."""
-    for e in range(now.step.size):
-        now.share[e] = now.step[e]
-    for l in range(bent.slope.size):
-        now.share[laws.of[l]] += bent.slope[l]
-        bent.built[l] = bent.slope[l]
-    for k in range(solver.matrix.size):
-        solver.matrix[k] = solver.steady[k]
-    _add(fill, now.share, solver.matrix)
-    for k in range(cranks.row.size):
-        solver.matrix[cranks.slot[k]] += cranks.weight[k] * mu * inertia[cranks.row[k]]
-    solver.built[0] = 1.0
-    return factor(tape, solver.matrix, solver.lower, solver.inverse)
+    matrix = solver.matrix[MATRIX]
+    for e in range(now.shape[1]):
+        now[SHARE, e] = now[STEP, e]
+    for l in range(laws.shape[1]):
+        now[SHARE, law_places[LAW_OF, l]] += laws[SLOPE, l]
+        laws[BUILT, l] = laws[SLOPE, l]
+    for k in range(matrix.size):
+        matrix[k] = solver.matrix[STEADY, k]
+    for k in range(fill.steady, fill.bent):
+        matrix[fill.at[SLOT, k]] += fill.weight[k] * now[SHARE, fill.at[ROW, k]]
+    for k in range(fill.bent, fill.weight.size):
+        matrix[fill.at[SLOT, k]] += fill.weight[k] * mu * inertia[fill.at[ROW, k]]
+    return factor(tape, matrix, solver.lower, solver.inverse)
 
 
 @inlined()
@@ -247,33 +255,41 @@ def inertial(masses: Masses, acceleration: Array, out: Array) -> None:
     for i in range(out.size):
         out[i] = masses.diagonal[i] * acceleration[i]
     for k in range(masses.above.size):
-        i, j = masses.above_row[k], masses.above_column[k]
+        i, j = masses.above_at[0, k], masses.above_at[1, k]
         out[i] += masses.above[k] * acceleration[j]
         out[j] += masses.above[k] * acceleration[i]
+
+
+@inner()
+def swing(rows: Rows, first: int, inertia: Array, acceleration: Array, x: Array) -> None:
+    """x ← x − what the cranks' inertias hold against q̈, their rows beginning with the ``first``."""
+    for k in range(inertia.size):
+        spread(rows, first + k, -inertia[k] * row_product(rows, first + k, acceleration), x)
 
 
 @inlined()
 def solve(plan: Plan, w: Work, m: Method) -> None:
     """One pass: what is out of balance, its δ, the motion and the torques that follow from it."""
-    trial, now, bent, node = w.trial, w.now, w.bent, plan.tape.node
-    inertial(plan.masses, trial.acceleration, trial.left)
-    for i in range(trial.left.size):
-        trial.left[i] = trial.external[i] - trial.left[i]
-    scatter(plan.pairs, now.torque, trial.left)
-    for l in range(bent.torque.size):
-        scatter_one(plan.pairs, plan.laws.of[l], bent.torque[l], trial.left)
-    rows = plan.outside.driven.crank_rows
-    for k in range(w.driving.crank_inertia.size):
-        spread(rows, k, -w.driving.crank_inertia[k] * row_product(rows, k, trial.acceleration), trial.left)
+    tape, masses, pairs, rows, first = plan.tape, plan.masses, plan.pairs, plan.outside.rows, plan.outside.crank_row
+    trial, now, laws, of, cranks, solver = w.trial, w.now, w.bent.laws, plan.laws.places, w.driving.cranks, w.solver
+    node, left, ordered = tape.node, trial[INERTIAL], trial[ORDERED]
+    inertial(masses, trial[ACCELERATION], left)
+    for i in range(left.size):
+        left[i] = trial[EXTERNAL, i] - left[i]
+    scatter(pairs, now[TORQUE], left)
+    for l in range(laws.shape[1]):
+        scatter_one(pairs, of[LAW_OF, l], laws[LAW_TORQUE, l], left)
+    if cranks.shape[1]:
+        swing(rows, first, cranks[HEAVY], trial[ACCELERATION], left)
     for p in range(node.size):
-        trial.ordered[p] = trial.left[node[p]]
-    substitute(plan.tape, w.solver.lower, w.solver.inverse, trial.ordered)
+        ordered[p] = left[node[p]]
+    substitute(tape.couplings, solver.lower, solver.inverse, ordered)
     for p in range(node.size):
-        trial.left[node[p]] = trial.ordered[p]
-    for i in range(trial.left.size):
-        trial.delta[i] += trial.left[i]
-        trial.acceleration[i] += m.mu * trial.left[i]
-    gather(plan.pairs, trial.left, now.moved)
+        left[node[p]] = ordered[p]
+    for i in range(left.size):
+        trial[DELTA, i] += left[i]
+        trial[ACCELERATION, i] += m.mu * left[i]
+    gather(pairs, left, now[MOVED])
     advance(now, m.by_angle, m.by_rate)
-    for l in range(bent.torque.size):
-        bent.torque[l] += bent.built[l] * now.moved[plan.laws.of[l]]
+    for l in range(laws.shape[1]):
+        laws[LAW_TORQUE, l] += laws[BUILT, l] * now[MOVED, of[LAW_OF, l]]

@@ -17,3 +17,6 @@ uncounted = functools.partial(numba.njit, cache=True, error_model="numpy", _nrt=
 
 inlined = functools.partial(numba.njit, cache=True, error_model="numpy", _nrt=False, inline="always")
 """Decorator: the same, and part of whatever calls it."""
+
+inner = functools.partial(uncounted, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Decorator: the same as `uncounted`, for compiled code alone to call: without what Python calls it by."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Entry
+from torsional.numerics.stepping_plan import CONTACT_TIME, PACE
 from torsional.solvers.transient.marching import Accuracy, Marched, method_share
 from torsional.solvers.transient.problem import Problem
 
@@ -48,7 +49,7 @@ def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str
 def _guarded(problem: Problem, told: Marched, step: float) -> dict[str, str]:
     """Contacts that the step gave a damper, and what it took; ``damped`` where that is felt."""
     hinges, names = problem.plan.hinges, problem.system.connections.names
-    raised = (step * hinges.pace > STIFF) & (hinges.contact_time < 0.5 * step)
+    raised = (step * hinges.values[PACE] > STIFF) & (hinges.values[CONTACT_TIME] < 0.5 * step)
     if told.end.standing is None or not raised.any():
         return {}
     listed = list(dict.fromkeys(names[e] for e in hinges.of[raised]))

@@ -175,7 +175,8 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         memory=state.memory,
     )
     torque, load = np.zeros((2, *run.memories.shape))
-    element_torques(problem.equations, times, run.angles, run.rates, run.memories, run.references, torque, load)
+    connected, outside = problem.equations.connected, problem.plan.outside
+    element_torques(connected, outside, times, run.angles, run.rates, run.memories, run.references, torque, load)
     end = State(
         time=float(times[-1]),
         angle=run.angles[-1],

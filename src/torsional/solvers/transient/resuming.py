@@ -43,8 +43,10 @@ def resumed(start: object, state: State, problem: Problem, accuracy: Accuracy) -
 
 
 def mark(problem: Problem, accuracy: Accuracy) -> str:
-    """What is the same for runs that can go on from each other: the equations, and the method but for its step."""
-    found = hashlib.sha256(f"{problem.system.hash} {accuracy.method} {accuracy.spectral_radius!r}".encode())
+    """What is the same for runs that can go on from each other: the equations, the method but for its step, and how the
+    row is laid out."""
+    laid_out = " ".join(Standing._fields)
+    found = hashlib.sha256(f"{problem.system.hash} {accuracy.method} {accuracy.spectral_radius!r} {laid_out}".encode())
     for values in _numbers(problem.equations):
         found.update(np.ascontiguousarray(values).tobytes())
     return found.hexdigest()[:16]

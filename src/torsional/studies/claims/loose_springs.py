@@ -18,7 +18,18 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping_plan import HingeRows, Pairs, dense, mass_matrix
+from torsional.numerics.stepping_plan import (
+    CHANGE,
+    CONTACT_TIME,
+    GAP,
+    LEFT,
+    RIGHT,
+    SIDE,
+    HingeRows,
+    Pairs,
+    dense,
+    mass_matrix,
+)
 from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State, starting
@@ -122,7 +133,7 @@ class LooseMotion:
         """ẏ(t, y) of y = (q, q̇), compiled; raises ModelError for more than springs, dampers and hinges."""
         equations, plan = self.problem.equations, self.problem.plan
         connected = equations.connected
-        if connected.address.any() or plan.pairs.extra_row.size or connected.centrifugal.any():
+        if connected.address.any() or plan.pairs.extra.size or connected.centrifugal.any():
             raise ModelError("only springs, dampers and hinges of pairs have this right-hand side")
         inverse = np.asarray(np.linalg.inv(mass_matrix(equations)), dtype=float)
         springs = np.array([connected.stiffness, connected.damping])
@@ -141,12 +152,13 @@ class LooseMotion:
         n, on, hinges = equations.coordinates, equations.connected, self.problem.plan.hinges
         w, inverse = dense(on.rows, n), np.linalg.inv(mass_matrix(equations))
         of = hinges.of.astype(int)
+        gap, side, change, delay = hinges.values[[GAP, SIDE, CHANGE, CONTACT_TIME]]
 
         def jacobian(t: float, y: Array) -> Array:
-            depth = w[of] @ y[:n] - hinges.gap + hinges.contact_time * (w[of] @ y[n:])
-            closed = np.where(hinges.side * depth > 0.0, hinges.change, 0.0)
+            depth = w[of] @ y[:n] - gap + delay * (w[of] @ y[n:])
+            closed = np.where(side * depth > 0.0, change, 0.0)
             k = on.stiffness + np.bincount(of, closed, len(w))
-            c = on.damping + np.bincount(of, closed * hinges.contact_time, len(w))
+            c = on.damping + np.bincount(of, closed * delay, len(w))
             lower = [-inverse @ ((w.T * each) @ w) for each in (k, c)]
             return np.block([[np.zeros((n, n)), np.eye(n)], [lower[0], lower[1]]])
 
@@ -157,23 +169,23 @@ class LooseMotion:
 def _rates(
     pairs: Pairs, springs: Array, hinges: HingeRows, inverse: Array, loads: Array, phase: float, y: Array, out: Array
 ) -> None:
-    n, count = inverse.shape[0], springs.shape[1]
+    n, count, ends, weights = inverse.shape[0], springs.shape[1], pairs.ends, pairs.weights
     q, v, torque = y[:n], y[n:], np.empty(n)
     angle, rate, held = np.empty(count), np.empty(count), np.empty(count)
     for i in range(n):
         torque[i] = loads[0, i] + loads[1, i] * math.cos(phase) + loads[2, i] * math.sin(phase)
     for e in range(count):
-        left, right, first, second = pairs.left[e], pairs.right[e], pairs.first[e], pairs.second[e]
+        left, right, first, second = ends[LEFT, e], ends[RIGHT, e], weights[LEFT, e], weights[RIGHT, e]
         angle[e], rate[e] = first * q[left] + second * q[right], first * v[left] + second * v[right]
         held[e] = springs[0, e] * angle[e] + springs[1, e] * rate[e]
     for i in range(hinges.of.size):
         e = hinges.of[i]
-        depth = angle[e] - hinges.gap[i] + hinges.contact_time[i] * rate[e]
-        if hinges.side[i] * depth > 0.0:
-            held[e] += hinges.change[i] * depth
+        depth = angle[e] - hinges.values[GAP, i] + hinges.values[CONTACT_TIME, i] * rate[e]
+        if hinges.values[SIDE, i] * depth > 0.0:
+            held[e] += hinges.values[CHANGE, i] * depth
     for e in range(count):
-        torque[pairs.left[e]] -= pairs.first[e] * held[e]
-        torque[pairs.right[e]] -= pairs.second[e] * held[e]
+        torque[ends[LEFT, e]] -= weights[LEFT, e] * held[e]
+        torque[ends[RIGHT, e]] -= weights[RIGHT, e] * held[e]
     for i in range(n):
         out[i], total = v[i], 0.0
         for j in range(n):
