@@ -13,7 +13,19 @@ import re
 from torsional.errors import ModelError, nearest
 from torsional.nomenclature import CANONICAL, QUANTITIES, UNITS, Quantity, pretty
 
-__all__ = ["QUANTITIES", "RPM", "UNITS", "Quantity", "convert", "plausible", "quoted", "read", "read_range", "show"]
+__all__ = [
+    "QUANTITIES",
+    "RPM",
+    "UNITS",
+    "Quantity",
+    "convert",
+    "plausible",
+    "quoted",
+    "read",
+    "read_range",
+    "show",
+    "show_speed",
+]
 
 RPM = math.pi / 30
 """One revolution per minute in rad/s: ``1500 * RPM`` is a speed, and ``speed / RPM`` a number of rpm."""
@@ -163,6 +175,15 @@ def show(value: float, quantity: str, unit: str | None = None) -> str:
     number = value / _factor(chosen, described.kind, "", chosen)
     text = f"{number + 0.0:.5g}" if not 1e5 <= abs(number) < 1e9 else f"{number:.0f}"
     return text if chosen == "-" else f"{text} {chosen}"
+
+
+def show_speed(speed: float) -> str:
+    """A speed [rad/s] in a message, in rpm too, as which most are written.
+
+    >>> show_speed(62.8)
+    '62.8 rad/s (599.7 rpm)'
+    """
+    return f"{speed:g} rad/s ({show(speed, 'speed')})"
 
 
 def read_range(value: object, quantity: str, where: str = "") -> tuple[float, ...]:

@@ -154,7 +154,7 @@ VALUES = [
     (
         "compression_ratio: 18.1",
         "50",
-        "engine.compression_ratio (line ?): the value is out of range; found 50; allowed: 2 to 40",
+        "engine.compression_ratio (line ?): is out of range; found 50; allowed: 2 to 40",
     ),
     (
         "idle: 600 rpm",
@@ -951,7 +951,7 @@ CURVES: list[tuple[str, str | bytes | None, str]] = [
     (
         "negative torque",
         HEAD + "600,-1\n700,2\n",
-        "engine.full_load (line ?): a full-load torque is never negative; found -1 Nm",
+        "engine.full_load (line ?): must not be negative; found -1; allowed: >= 0 Nm",
     ),
     (
         "a cell too few",

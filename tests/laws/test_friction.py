@@ -209,7 +209,7 @@ def test_stick_slip_as_an_integrator_of_its_own_finds_it() -> None:
         (lambda: Jenkins(1.0, 0.0), "stiffness: must be positive"),
         (lambda: Coulomb(1.0, 0.0), "regularisation_rate: must be positive"),
         (lambda: LuGre(1e5, 1.0, 2.0, 1.0, 0.1), "breakaway_torque: must not be below sliding"),
-        (lambda: LuGre(1e5, 1.0, 2.0, 2.0, float("nan")), "stribeck_rate: must be positive"),
+        (lambda: LuGre(1e5, 1.0, 2.0, 2.0, float("nan")), "stribeck_rate: a finite number is wanted; found nan"),
         (lambda: LuGre(1e5, -1.0, 2.0, 2.0, 0.1), "bristle_damping: must not be negative"),
     ],
 )

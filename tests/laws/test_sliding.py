@@ -250,7 +250,7 @@ def test_karnopps_stick_slip_tends_to_the_exact_one() -> None:
         (lambda: Stribeck(1.0, 1.5, 1.0, 0.1, grease_damping=-1.0), "grease_damping: must not be negative"),
         (lambda: Karnopp(1.0, float("inf"), 0.1, 1.0), "breakaway_torque"),
         (lambda: Karnopp(1.0, 1.5, 0.0, 1.0), "stick_rate: must be positive"),
-        (lambda: Karnopp(1.0, 1.5, 0.1, float("nan")), "bristle_stiffness: must be positive"),
+        (lambda: Karnopp(1.0, 1.5, 0.1, float("nan")), "bristle_stiffness: a finite number is wanted; found nan"),
         (lambda: Karnopp(1.0, 1.5, 0.1, 1.0, normal_load=-1.0), "normal_load: must not be negative"),
     ],
 )

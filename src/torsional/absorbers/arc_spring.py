@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+from torsional import checks
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.spring_design import SpringFlywheel, detailed, fitting, whole
 from torsional.absorbers.spring_parts import SAME, CoilSpring, GuideFriction
 from torsional.absorbers.spring_row import Row, guided, loads
 from torsional.arguments import checked
-from torsional.components import Component, checks
+from torsional.components import Component
 from torsional.errors import ModelError
 
 LEAST_SEGMENTS = 6

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from torsional import checks
 from torsional.absorbers.base import Absorber
 from torsional.arguments import checked
-from torsional.components import checks
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Law
 from torsional.stamps import Connection, Mass, Stamp, Swing

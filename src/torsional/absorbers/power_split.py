@@ -6,8 +6,8 @@ import math
 
 from torsional.absorbers.base import Absorber
 from torsional.arguments import checked
+from torsional.checks import number
 from torsional.components import Component, Coupling, Inertia, PlanetSpin, Superposition
-from torsional.components.checks import number
 from torsional.errors import ModelError
 from torsional.laws import Law
 
@@ -35,7 +35,7 @@ def power_split_absorber(
     >>> power_split_absorber(1.8, 0.5, 0.02, 1.2, Hinges(20e3), planet_ratio=2.5, gear_quotient=0.6).output
     'output'
     """
-    if not 0 < number(gear_quotient, "gear_quotient", "gear_ratio") <= 1:
+    if not 0 < number(gear_quotient, "gear_quotient") <= 1:
         raise ModelError(
             "the gear quotient of a power split absorber is above 0 and at most 1",
             where="gear_quotient",

@@ -7,13 +7,14 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
+from torsional import checks
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.dual_mass import dual_mass_flywheel
 from torsional.absorbers.spring_curves import Rising, both_ways, pressed, side_by_side
 from torsional.absorbers.spring_parts import SAME, GuideFriction
 from torsional.absorbers.spring_row import Pair, Row, guided, loads, sprung
 from torsional.arguments import checked
-from torsional.components import Component, Coupling, Inertia, checks
+from torsional.components import Component, Coupling, Inertia
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges
 
@@ -178,7 +179,7 @@ def pair(values: Pair, field: str) -> None:
     if len(values) != 2:
         raise ModelError("two clearances are wanted", where=field, found=repr(values), allowed="(drive, coast)")
     for value in values:
-        if checks.number(value, field, "relative_angle") < 0:
+        if checks.number(value, field) < 0:
             remedy = "springs that press on their tabs at rest are longer than their channel: preloaded"
             found = f"{math.degrees(value):g}°"
             raise ModelError("a clearance must not be negative", where=field, found=found, remedy=remedy)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from torsional.components import checks
+from torsional import checks
 from torsional.errors import ModelError
 from torsional.laws import LuGre
 
@@ -71,7 +71,7 @@ class GuideFriction:
         checks.positive(self.presliding, "presliding", "length")
         checks.not_negative(self.bristle_time, "bristle_time", "time")
         checks.not_negative(self.viscous_coefficient, "viscous_coefficient", "number")
-        if checks.number(self.static, "static_coefficient", "friction_coefficient") < self.sliding_coefficient:
+        if checks.number(self.static, "static_coefficient") < self.sliding_coefficient:
             found, allowed = f"{self.static:g}", f"at least the sliding coefficient, {self.sliding_coefficient:g}"
             raise ModelError("must not be below sliding", where="static_coefficient", found=found, allowed=allowed)
         least = self.bristle_time * (self.static - self.sliding_coefficient) / self.presliding

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+from torsional import checks
 from torsional.absorbers.base import Absorber
 from torsional.absorbers.spring_design import SpringFlywheel, detailed, fitting, pair, whole
 from torsional.absorbers.spring_parts import SAME, CoilSpring
 from torsional.absorbers.spring_row import Pair, Row
 from torsional.arguments import checked
-from torsional.components import checks
 from torsional.errors import ModelError
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from torsional.components import checks
+from torsional import checks
 from torsional.errors import ModelError
 from torsional.laws import Hinges, Law
 from torsional.stamps import Connection, NormalLoad

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from torsional.components import checks
+from torsional import checks
 from torsional.errors import ModelError
 from torsional.stamps import Constraint, Mass, SpeedSwitch, Stamp
 
@@ -85,7 +85,7 @@ class Superposition:
         checks.distinct(self.a, self.b)
         checks.distinct(self.node, self.a)
         checks.distinct(self.node, self.b)
-        checks.number(self.ratio, "ratio", "gear_ratio")
+        checks.number(self.ratio, "ratio")
 
     def stamps(self, name: str) -> Iterator[Constraint]:
         """θ_node − (1 − r) θ_a − r θ_b = 0."""
@@ -112,7 +112,7 @@ class PlanetSpin:
 
     def __post_init__(self) -> None:
         checks.distinct(self.a, self.b)
-        checks.number(self.ratio, "ratio", "gear_ratio")
+        checks.number(self.ratio, "ratio")
         checks.not_negative(self.inertia, "inertia", "inertia")
 
     def stamps(self, name: str) -> Iterator[Mass]:

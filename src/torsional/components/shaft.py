@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from torsional.components import checks
+from torsional import checks
 from torsional.stamps import Connection, Mass, Stamp
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from torsional.components import checks
+from torsional import checks
 from torsional.errors import ModelError
 from torsional.laws import LuGre
 from torsional.stamps import Connection, NormalLoad
@@ -49,7 +49,7 @@ class SlipClutch:
         checks.positive(self.stribeck_rate, "stribeck_rate", "speed")
         checks.positive(self.stiffness, "stiffness", "stiffness")
         checks.not_negative(self.damping, "damping", "damping")
-        if not checks.number(self.breakaway, "breakaway", "ratio") >= 1:
+        if not checks.number(self.breakaway, "breakaway") >= 1:
             raise ModelError("sticking carries no less than sliding", where="breakaway", found=f"{self.breakaway:g}")
 
     @classmethod

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from torsional.components import checks
+from torsional import checks
 from torsional.laws import LuGre
 from torsional.stamps import Connection, NormalLoad
 

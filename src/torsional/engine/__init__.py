@@ -8,7 +8,7 @@ from torsional.engine.excitation import Excitation
 from torsional.engine.friction import ChenFlynn
 from torsional.engine.full_load import FullLoad
 from torsional.engine.gas import GasSource, PressureShapes
-from torsional.engine.points import MeanTorque, OperatingPoints
+from torsional.engine.loading import MeanTorque, OperatingPoints
 from torsional.engine.pressure import PressureTrace
 from torsional.engine.slider_crank import SliderCrank
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import finite, positive, within
+from torsional.checks import number, positive, within
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
 from torsional.engine.orders import CYCLE, FloatArray, crank_angle_grid
@@ -36,11 +36,10 @@ class Wiebe:
     efficiency: float = 6.908
 
     def __post_init__(self) -> None:
-        within(self.start, -math.pi, math.pi, "wiebe.start", "rad")
-        positive(self.duration, "wiebe.duration", "rad")
-        within(self.duration, 0.01, math.pi, "wiebe.duration", "rad")
-        within(self.shape, 0.0, 10.0, "wiebe.shape")
-        positive(self.efficiency, "wiebe.efficiency")
+        within(self.start, -math.pi, math.pi, "wiebe.start", "angle")
+        within(self.duration, 0.01, math.pi, "wiebe.duration", "angle")
+        within(self.shape, 0.0, 10.0, "wiebe.shape", "number")
+        positive(self.efficiency, "wiebe.efficiency", "number")
 
     def burnt(self, crank_angle: ArrayLike) -> FloatArray:
         """Burnt fraction [-], in the shape of the crank angle [rad, −2π to 2π]."""
@@ -62,8 +61,8 @@ class LoadTable:
         if not self.points or any(len(point) != 2 for point in self.points):
             raise ModelError("pairs of mean effective pressure and value are needed", where="load table")
         for point in self.points:
-            finite(point[0], "load table", "Pa")
-            finite(point[1], "load table")
+            number(point[0], "load table")
+            number(point[1], "load table")
         pressures = [point[0] for point in self.points]
         if any(b <= a for a, b in pairwise(pressures)):
             found = ", ".join(f"{pressure:g}" for pressure in pressures)
@@ -107,20 +106,20 @@ class CombustionCycle:
     exhaust_back_pressure: float = 0.2e5
 
     def __post_init__(self) -> None:
-        within(self.compression_exponent, 1.1, 1.67, "compression_exponent")
-        within(self.expansion_exponent, 1.1, 1.67, "expansion_exponent")
-        within(self.blowdown_angle, 0.02, 1.0, "blowdown_angle", "rad")
-        within(self.valve_overlap, 0.05, 2.0, "valve_overlap", "rad")
-        within(self.exhaust_back_pressure, -1e6, 1e7, "exhaust_back_pressure", "Pa")
+        within(self.compression_exponent, 1.1, 1.67, "compression_exponent", "number")
+        within(self.expansion_exponent, 1.1, 1.67, "expansion_exponent", "number")
+        within(self.blowdown_angle, 0.02, 1.0, "blowdown_angle", "angle")
+        within(self.valve_overlap, 0.05, 2.0, "valve_overlap", "angle")
+        within(self.exhaust_back_pressure, -1e6, 1e7, "exhaust_back_pressure", "pressure")
         half = 0.5 * self.valve_overlap
-        within(self.intake_closing, half - 2 * math.pi, -0.2, "intake_closing", "rad")
-        within(self.exhaust_opening, 0.2, 2 * math.pi - half, "exhaust_opening", "rad")
+        within(self.intake_closing, half - 2 * math.pi, -0.2, "intake_closing", "angle")
+        within(self.exhaust_opening, 0.2, 2 * math.pi - half, "exhaust_opening", "angle")
         for name, value, low, high in (
             ("boost", self.boost, 1e4, 2e6),
             ("premixed_fraction", self.premixed_fraction, 0, 1),
         ):
-            for number in [point[1] for point in value.points] if isinstance(value, LoadTable) else [value]:
-                within(number, low, high, name)
+            for each in [point[1] for point in value.points] if isinstance(value, LoadTable) else [value]:
+                within(each, low, high, name, "number")
         for name, wiebe in (("main", self.main), ("premixed", self.premixed)):
             if not self.intake_closing <= wiebe.start < self.exhaust_opening:
                 found, allowed = f"{wiebe.start:g} rad", "after intake closing and before exhaust opening"

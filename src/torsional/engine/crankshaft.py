@@ -10,7 +10,7 @@ from numbers import Integral
 
 import numpy as np
 
-from torsional.engine.checks import finite
+from torsional.checks import number
 from torsional.engine.orders import CYCLE, FloatArray
 from torsional.errors import ModelError
 
@@ -128,7 +128,7 @@ class CrankLayout:
         if not self.firing_intervals:
             return
         for index, interval in enumerate(self.firing_intervals):
-            finite(interval, f"firing_intervals.{index}", "rad")
+            number(interval, f"firing_intervals.{index}")
         if len(self.firing_intervals) != self.cylinders or min(self.firing_intervals) < 0:
             found = ", ".join(f"{math.degrees(step):g}°" for step in self.firing_intervals)
             allowed = f"{self.cylinders} angles, none negative"
@@ -153,7 +153,7 @@ class CrankLayout:
                 raise ModelError(problem, where="throws", found=f"banks {seated} on throw {throw}")
 
     def _check_vee(self) -> None:
-        apart = finite(self.bank_angle, "bank_angle", "rad") + finite(self.pin_split, "pin_split", "rad")
+        apart = number(self.bank_angle, "bank_angle") + number(self.pin_split, "pin_split")
         lags = {}
         for throw in range(1, self.throw_count + 1):
             seated = [index for index, place in enumerate(self.throws) if place == throw]

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import positive, within
+from torsional.checks import positive, within
 from torsional.engine.orders import FloatArray, crank_angle_grid
 from torsional.engine.slider_crank import SliderCrank
 
@@ -28,8 +28,8 @@ class Cylinder:
     crank: SliderCrank
 
     def __post_init__(self) -> None:
-        positive(self.bore, "bore", "m")
-        within(self.compression_ratio, 2.0, 40.0, "compression_ratio")
+        positive(self.bore, "bore", "length")
+        within(self.compression_ratio, 2.0, 40.0, "compression_ratio", "number")
 
     @property
     def area(self) -> float:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import finite, positive, within
+from torsional.checks import not_negative, positive, within
+from torsional.engine.checks import check_deactivated, check_heat_spread
 from torsional.engine.combustion import CombustionCycle
 from torsional.engine.crankshaft import CrankLayout
 from torsional.engine.cylinder import Cylinder
@@ -18,7 +19,7 @@ from torsional.engine.excitation import Excitation, checked_nodes
 from torsional.engine.friction import ChenFlynn
 from torsional.engine.full_load import FullLoad
 from torsional.engine.gas import GasSource, PressureShapes
-from torsional.engine.loading import Balance, Groups, refuse_below_motored
+from torsional.engine.loading import Balance, Groups, MeanTorque, OperatingPoints, refuse_below_motored
 from torsional.engine.orders import (
     CYCLE,
     BoolArray,
@@ -30,9 +31,7 @@ from torsional.engine.orders import (
     periodic_spline,
     picked,
 )
-from torsional.engine.points import MeanTorque, OperatingPoints
 from torsional.engine.slider_crank import SliderCrank
-from torsional.engine.unequal import check_deactivated, check_heat_spread
 from torsional.errors import ModelError
 
 if TYPE_CHECKING:
@@ -77,13 +76,10 @@ class Engine:
     full_load: FullLoad | None = None
 
     def __post_init__(self) -> None:
-        positive(self.stroke, "stroke", "m")
-        if finite(self.reciprocating_mass, "reciprocating_mass", "kg") < 0:
-            raise ModelError(
-                "a mass is not negative", where="reciprocating_mass", found=f"{self.reciprocating_mass:g} kg"
-            )
-        within(self.crankcase_pressure, 0.0, 1e6, "crankcase_pressure", "Pa")
-        within(self.trapped_pressure, 0.0, 2e6, "trapped_pressure", "Pa")
+        positive(self.stroke, "stroke", "length")
+        not_negative(self.reciprocating_mass, "reciprocating_mass", "mass")
+        within(self.crankcase_pressure, 0.0, 1e6, "crankcase_pressure", "pressure")
+        within(self.trapped_pressure, 0.0, 2e6, "trapped_pressure", "pressure")
         for name in ("deactivated", "heat_spread"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         check_deactivated(self.deactivated, self.deactivated_valves, self.layout.cylinders)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import within
+from torsional.checks import within
 from torsional.engine.orders import FloatArray
 
 
@@ -32,8 +32,8 @@ class ChenFlynn:
     quadratic: float = 0.0011e5
 
     def __post_init__(self) -> None:
-        within(self.constant, 0.0, 1e6, "friction.constant", "Pa")
-        within(self.peak_pressure_factor, 0.0, 0.05, "friction.peak_pressure_factor")
+        within(self.constant, 0.0, 1e6, "friction.constant", "pressure")
+        within(self.peak_pressure_factor, 0.0, 0.05, "friction.peak_pressure_factor", "number")
         within(self.linear, 0.0, 1e6, "friction.linear", "Pa s/m")
         within(self.quadratic, 0.0, 1e6, "friction.quadratic", "Pa s²/m²")
 

@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import both, finite, positive
+from torsional.checks import not_negative, positive
 from torsional.engine.orders import FloatArray
 from torsional.errors import ModelError
+from torsional.units import show_speed
 
 
 @dataclass(frozen=True)
@@ -33,9 +34,8 @@ class FullLoad:
             found = f"{len(self.speeds)} speeds, {len(self.torques)} torques"
             raise ModelError("two points and more, a torque for each speed", where="full_load", found=found)
         for speed, torque in zip(self.speeds, self.torques, strict=True):
-            positive(speed, "full_load", "rad/s")
-            if finite(torque, "full_load", "Nm") < 0:
-                raise ModelError("a full-load torque is never negative", where="full_load", found=f"{torque:g} Nm")
+            positive(speed, "full_load", "speed")
+            not_negative(torque, "full_load", "torque")
         if any(b <= a for a, b in pairwise(self.speeds)):
             found = ", ".join(f"{speed:g}" for speed in self.speeds)
             raise ModelError("the speeds must rise from point to point", where="full_load", found=f"{found} rad/s")
@@ -49,7 +49,7 @@ class FullLoad:
             raise ModelError(
                 "the full-load curve does not reach this speed",
                 where="full_load",
-                found=both(float(np.atleast_1d(asked)[np.atleast_1d(outside)][0])),
-                allowed=f"{both(self.speeds[0])} to {both(self.speeds[-1])}",
+                found=show_speed(float(np.atleast_1d(asked)[np.atleast_1d(outside)][0])),
+                allowed=f"{show_speed(self.speeds[0])} to {show_speed(self.speeds[-1])}",
             )
         return np.asarray(np.interp(asked, self.speeds, self.torques))

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from torsional.engine.checks import both
 from torsional.engine.orders import BoolArray, FloatArray, IntArray
 from torsional.errors import ModelError
+from torsional.units import show_speed
 
 BATCH = 2048
 """Operating points solved at a time, so that a map of a million needs no more memory than one of a thousand."""
@@ -90,6 +90,36 @@ class Balance:
         return np.asarray((still @ self.work) @ self.count - self.peak_factor * self.friction_arm * (peak @ self.count))
 
 
+@dataclass(frozen=True, eq=False)
+class OperatingPoints:
+    """Operating points solved: ``speed`` [rad/s] in the broadcast shape S of speed and torque, flattened to (B,).
+
+    ``coefficients`` of the pressure shapes by group of equal cylinders (B, G, K); ``heat`` (B,) [J a cylinder and
+    cycle, or the factor on a measured trace's combustion]; ``peak_pressure`` (B, G) [Pa]; ``friction`` (B, G), the mean
+    friction torque of one cylinder [Nm].
+    """
+
+    shape: tuple[int, ...]
+    speed: FloatArray
+    coefficients: FloatArray
+    heat: FloatArray
+    peak_pressure: FloatArray
+    friction: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class MeanTorque:
+    """Mean torque of each throw [Nm], shape S + (throws,): of the gas, and what friction takes of it."""
+
+    gas: FloatArray
+    friction: FloatArray
+
+    @property
+    def net(self) -> FloatArray:
+        """Gas less friction; the sum over the throws is the engine's brake torque."""
+        return np.asarray(self.gas - self.friction)
+
+
 def refuse_below_motored(wanted: FloatArray, least: FloatArray, speed: FloatArray) -> None:
     """Raise ModelError where less torque is wanted than the motored engine gives."""
     short = wanted < least - 1e-9 * (1.0 + np.abs(least))
@@ -98,7 +128,7 @@ def refuse_below_motored(wanted: FloatArray, least: FloatArray, speed: FloatArra
         raise ModelError(
             "the mean torque is below that of the motored engine without any fuel",
             where="mean_torque",
-            found=f"{wanted[index]:g} Nm at {both(float(speed[index]))}",
+            found=f"{wanted[index]:g} Nm at {show_speed(float(speed[index]))}",
             allowed=f"{least[index]:g} Nm and more",
             remedy="engine brakes are not in the built-in cycle; see motored_torque",
         )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import finite, positive
+from torsional import checks
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
 from torsional.engine.orders import CYCLE, SAMPLES, FloatArray, crank_angle_grid, periodic_spline
@@ -71,7 +71,7 @@ class PressureTrace:
             raise ModelError("a record over time needs the engine speed", where=table.name, remedy="give speed [rad/s]")
         else:
             assert table.time is not None
-            angle = table.time * positive(speed, "speed", "rad/s")
+            angle = table.time * checks.positive(speed, "speed", "speed")
         try:
             return cls.sampled(angle, table.pressure, offset=offset, own_angle=own_angle)
         except ModelError as error:
@@ -96,7 +96,7 @@ class PressureTrace:
         _check_pressures(values)
         angle, values = _unwrapped(angle, values)
         cycles, kept = _whole_cycles(angle)
-        knots = np.append(angle[kept], angle[0] + cycles * CYCLE) + finite(offset, "offset", "rad")
+        knots = np.append(angle[kept], angle[0] + cycles * CYCLE) + checks.number(offset, "offset")
         spline = periodic_spline(knots, values[:, kept])
         grid = crank_angle_grid() + CYCLE * np.arange(cycles)[:, None]
         return cls(spline(grid).mean(axis=1), own_angle)

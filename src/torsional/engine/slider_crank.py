@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsional.engine.checks import finite, positive
+from torsional.checks import number, positive
 from torsional.engine.orders import (
     ComplexArray,
     FloatArray,
@@ -43,9 +43,9 @@ class SliderCrank:
     pin_offset: float = 0.0
 
     def __post_init__(self) -> None:
-        positive(self.crank_radius, "crank_radius", "m")
-        positive(self.rod_length, "rod_length", "m")
-        reach = self.crank_radius + abs(finite(self.pin_offset, "pin_offset", "m"))
+        positive(self.crank_radius, "crank_radius", "length")
+        positive(self.rod_length, "rod_length", "length")
+        reach = self.crank_radius + abs(number(self.pin_offset, "pin_offset"))
         if self.rod_length <= reach:
             raise ModelError(
                 "the rod is too short for the crank to turn",

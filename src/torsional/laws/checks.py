@@ -11,18 +11,6 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 
 
-def positive(value: float, field: str, unit: str) -> None:
-    """Refuse all but finite numbers above zero."""
-    if not (math.isfinite(value) and value > 0):
-        raise ModelError("must be positive", where=field, found=f"{value}", allowed=f"> 0 {unit}".strip())
-
-
-def not_negative(value: float, field: str, unit: str) -> None:
-    """Refuse all but finite numbers of zero and above."""
-    if not (math.isfinite(value) and value >= 0):
-        raise ModelError("must not be negative", where=field, found=f"{value}", allowed=f">= 0 {unit}".strip())
-
-
 def breakaway_above_sliding(sliding: float, breakaway: float) -> None:
     """Refuse a breakaway torque that is below the sliding torque."""
     if not sliding <= breakaway < math.inf:

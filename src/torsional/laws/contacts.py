@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
+from torsional.checks import not_negative, positive
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
-from torsional.laws.checks import not_negative, positive
 from torsional.laws.hinges import Hinges
 from torsional.numerics.arrays import Array
 
@@ -70,8 +70,8 @@ class Contacts(Law):
         if not np.isfinite(np.array(columns, dtype=float)).all() or any(s not in (-1.0, 1.0) for s in self.sides):
             raise ModelError("contacts need finite values and sides of +1 or -1", found=repr(self))
         for i, (stiffness, time) in enumerate(zip(self.stiffnesses, self.contact_times, strict=True)):
-            positive(stiffness, f"stiffnesses.{i}", "Nm/rad")
-            not_negative(time, f"contact_times.{i}", "s")
+            positive(stiffness, f"stiffnesses.{i}", "stiffness")
+            not_negative(time, f"contact_times.{i}", "time")
         if self.damper not in DAMPERS:
             raise ModelError("there is no such damper", where="damper", found=self.damper, allowed=", ".join(DAMPERS))
 
@@ -82,7 +82,7 @@ class Contacts(Law):
         >>> Contacts.lash(0.02, 1e5).gaps
         (0.01, -0.01)
         """
-        not_negative(play, "play", "rad")
+        not_negative(play, "play", "relative_angle")
         half = 0.5 * float(play)
         return cls((half, -half), (1.0, -1.0), (stiffness,) * 2, (contact_time,) * 2, damper=damper)
 
@@ -142,8 +142,8 @@ def contact_time(restitution: float, stiffness: float, inertia: float) -> float:
     """
     if not 0 < restitution <= 1:
         raise ModelError("restitution is a share of the speed", where="restitution", found=f"{restitution:g}")
-    positive(stiffness, "stiffness", "Nm/rad")
-    positive(inertia, "inertia", "kgm²")
+    positive(stiffness, "stiffness", "stiffness")
+    positive(inertia, "inertia", "inertia")
     lost = -math.log(restitution)
     return 2 * lost / math.hypot(math.pi, lost) * math.sqrt(inertia / stiffness)
 

@@ -12,8 +12,8 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told, plain
-from torsional.laws.checks import not_negative, positive
 from torsional.numerics.arrays import Array
 
 
@@ -44,8 +44,8 @@ class Coulomb(Law):
     carries_mean_torque: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        not_negative(self.limit_torque, "limit_torque", "Nm")
-        positive(self.regularisation_rate, "regularisation_rate", "rad/s")
+        not_negative(self.limit_torque, "limit_torque", "torque")
+        positive(self.regularisation_rate, "regularisation_rate", "angular_velocity")
 
     @property
     def parameters(self) -> Array:
@@ -92,8 +92,8 @@ class Jenkins(Law):
     departs: ClassVar[str] = "slips, where the linear response lets it stick"
 
     def __post_init__(self) -> None:
-        not_negative(self.limit_torque, "limit_torque", "Nm")
-        positive(self.stiffness, "stiffness", "Nm/rad")
+        not_negative(self.limit_torque, "limit_torque", "torque")
+        positive(self.stiffness, "stiffness", "stiffness")
 
     @property
     def parameters(self) -> Array:

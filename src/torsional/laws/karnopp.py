@@ -13,8 +13,9 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
+from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told
-from torsional.laws.checks import breakaway_above_sliding, not_negative, positive
+from torsional.laws.checks import breakaway_above_sliding
 from torsional.numerics.arrays import Array
 
 LOAD = 5
@@ -93,13 +94,13 @@ class Karnopp(Law):
     load_place: ClassVar[int] = LOAD
 
     def __post_init__(self) -> None:
-        not_negative(self.sliding_torque, "sliding_torque", "Nm")
+        not_negative(self.sliding_torque, "sliding_torque", "torque")
         breakaway_above_sliding(self.sliding_torque, self.breakaway_torque)
-        positive(self.stick_rate, "stick_rate", "rad/s")
-        positive(self.bristle_stiffness, "bristle_stiffness", "Nm/rad")
-        not_negative(self.bristle_damping, "bristle_damping", "Nms/rad")
-        not_negative(self.normal_load, "normal_load", "")
-        not_negative(self.grease_damping, "grease_damping", "Nms/rad")
+        positive(self.stick_rate, "stick_rate", "angular_velocity")
+        positive(self.bristle_stiffness, "bristle_stiffness", "stiffness")
+        not_negative(self.bristle_damping, "bristle_damping", "damping")
+        not_negative(self.normal_load, "normal_load", "number")
+        not_negative(self.grease_damping, "grease_damping", "damping")
 
     @property
     def parameters(self) -> Array:

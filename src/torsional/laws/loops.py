@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.arguments import checked
+from torsional.checks import positive
 from torsional.laws.base import Law
-from torsional.laws.checks import positive
 from torsional.numerics.arrays import Array
 
 
@@ -35,8 +35,8 @@ def hysteresis_loop(
     >>> round(loop.loss, 3), 4 * 50.0 * (0.01 - 50.0 / 25e3)
     (1.6, 1.6)
     """
-    positive(amplitude, "amplitude", "rad")
-    positive(frequency, "frequency", "Hz")
+    positive(amplitude, "amplitude", "relative_angle")
+    positive(frequency, "frequency", "frequency")
     phase = 2 * np.pi * np.arange(cycles * samples + 1) / samples
     angle = centre + amplitude * np.sin(phase)
     torque = law.march(angle, 1.0 / (frequency * samples))[0]

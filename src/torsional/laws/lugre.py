@@ -13,8 +13,9 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
+from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told
-from torsional.laws.checks import breakaway_above_sliding, not_negative, positive
+from torsional.laws.checks import breakaway_above_sliding
 from torsional.numerics.arrays import Array
 
 LOAD = 6
@@ -108,11 +109,12 @@ class LuGre(Law):
     load_place: ClassVar[int] = LOAD
 
     def __post_init__(self) -> None:
-        for name, unit in (("bristle_stiffness", "Nm/rad"), ("sliding_torque", "Nm"), ("stribeck_rate", "rad/s")):
-            positive(getattr(self, name), name, unit)
+        positive(self.bristle_stiffness, "bristle_stiffness", "stiffness")
+        positive(self.sliding_torque, "sliding_torque", "torque")
+        positive(self.stribeck_rate, "stribeck_rate", "angular_velocity")
         for name in ("bristle_damping", "viscous_damping", "grease_damping"):
-            not_negative(getattr(self, name), name, "Nms/rad")
-        not_negative(self.normal_load, "normal_load", "")
+            not_negative(getattr(self, name), name, "damping")
+        not_negative(self.normal_load, "normal_load", "number")
         breakaway_above_sliding(self.sliding_torque, self.breakaway_torque)
 
     @property

@@ -11,9 +11,10 @@ from typing import ClassVar
 import numba
 import numpy as np
 
+from torsional.checks import not_negative, positive
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
-from torsional.laws.checks import breakaway_above_sliding, not_negative, positive
+from torsional.laws.checks import breakaway_above_sliding
 from torsional.laws.lugre import stribeck
 from torsional.numerics.arrays import Array
 
@@ -58,12 +59,12 @@ class Stribeck(Law):
     load_place: ClassVar[int] = LOAD
 
     def __post_init__(self) -> None:
-        not_negative(self.sliding_torque, "sliding_torque", "Nm")
+        not_negative(self.sliding_torque, "sliding_torque", "torque")
         breakaway_above_sliding(self.sliding_torque, self.breakaway_torque)
         for name in ("stribeck_rate", "regularisation_rate"):
-            positive(getattr(self, name), name, "rad/s")
-        not_negative(self.normal_load, "normal_load", "")
-        not_negative(self.grease_damping, "grease_damping", "Nms/rad")
+            positive(getattr(self, name), name, "angular_velocity")
+        not_negative(self.normal_load, "normal_load", "number")
+        not_negative(self.grease_damping, "grease_damping", "damping")
         if self.regularisation_rate > self.stribeck_rate:
             found, allowed = f"{self.regularisation_rate:g} rad/s", f"at most the Stribeck rate, {self.stribeck_rate:g}"
             problem = "the curve would be smoothed away"
