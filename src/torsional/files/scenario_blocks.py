@@ -43,7 +43,10 @@ class Starter(Block):
 
     torque: Torque | None = Field(None, description="at standstill, at the crankshaft; default: half of full load")
     speed: Speed = Field(250 * RPM, description="of the crank, at which it gives no more")
-    until: Time = Field(1.2, description="when it is switched off")
+    release: Speed | None = Field(
+        None, description="of the crank, once reached it is off; default: half way from its own speed to idle"
+    )
+    until: Time = Field(1.2, description="when it is switched off at the latest")
 
 
 class SpeedGovernor(Block):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from torsional import ModelError, load_model, load_scenario, run_scenario, run_up
 from torsional.model import Model
@@ -130,3 +131,47 @@ def test_the_torque_of_a_detailed_flywheel_moves_its_secondary(kind: str) -> Non
     needed = clutch + 1.0 * run.acceleration.sel(node="secondary")
     assert float(own.min()) < -300 and float(own.max()) > 600
     np.testing.assert_allclose(own, needed, atol=1e-9)
+
+
+def test_a_starter_is_off_for_good_once_the_engine_runs(truck: Model) -> None:
+    """Too little heat: the crank falls again below the starter's 250 rpm, which pushed again if it were not off."""
+    weak = ["governor.speed=270 rpm", "governor.torque=400 Nm", "governor.droop=60 rpm", "duration=2.2 s"]
+
+    def started(*settings: str) -> xr.Dataset:
+        return run_scenario(truck, load_scenario("engine_start", [*weak, *settings]))
+
+    run = started("starter.until=2 s", "starter.release=270 rpm")
+    crank, on = run.angular_velocity.sel(node="primary"), run.schedule.sel(event="starter").values > 0.5
+    reached = float(run.time[crank.values >= 270 * RPM][0])
+    assert float(run.time[on][-1]) == pytest.approx(reached, abs=3e-4) and reached < 1.95
+    assert float(crank.sel(time=slice(reached, 2.0)).min()) < 250 * RPM
+    pushing = started("starter.until=2 s", "starter.release=900 rpm").angular_velocity.sel(node="primary")
+    same = crank.time.values <= reached
+    assert np.array_equal(crank.values[same], pushing.values[same])
+    assert float(np.abs(crank - pushing).max()) > 5 * RPM
+
+
+@pytest.mark.parametrize(("settings", "said"), [(["starter.release=200 rpm"], "starter.release.*more than.*250 rpm")])
+def test_a_starter_that_is_never_off_is_refused(truck: Model, settings: list[str], said: str) -> None:
+    with pytest.raises(ModelError, match=said):
+        run_scenario(truck, load_scenario("engine_start", settings))
+
+
+def test_a_run_at_full_load_keeps_its_speed_and_pays_for_its_vibration(truck: Model) -> None:
+    """What the ideal drive gives in the end is the power lost in dampers, which the ledger books by itself."""
+    speed = 1000 * RPM
+    run = run_up(truck, speed, 2500.0, 9.0)
+    crank, cycle = run.angular_velocity.sel(node="primary"), 4 * np.pi / speed
+    means = [float(crank.sel(time=slice(at, at + cycle - 1e-4)).mean()) for at in (4.0, 8.0)]
+    assert means == pytest.approx([speed, speed], abs=0.02 * RPM)
+    late = run.energy.sel(share="dampers").sel(time=slice(7.0, 9.0))
+    lost = float(late[-1] - late[0]) / float(late.time[-1] - late.time[0])
+    ratio = float(run.speed_ratio.sel(node="vehicle"))
+    assert lost > 500.0
+    assert float(run.end_integral[0]) * speed * ratio == pytest.approx(lost, rel=0.03)
+
+
+@pytest.mark.parametrize(("duration", "step", "said"), [(0.0, None, "duration"), (1.0, 0.0, "step")])
+def test_a_run_takes_time(truck: Model, duration: float, step: float | None, said: str) -> None:
+    with pytest.raises(ModelError, match=f"{said}.*positive time"):
+        run_up(truck, 90.0, 100.0, duration, step=step)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -39,6 +39,16 @@ class Phase(NamedTuple):
     end: float
 
 
+class Release(NamedTuple):
+    """A starter of a ``free`` speed [rad/s] that is off for good once the crank has reached ``speed`` before ``until``
+    [s]; ``off`` gives the plan in which it is off from a moment on."""
+
+    speed: float
+    free: float
+    until: float
+    off: Callable[[float], Plan]
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A scenario ready to be stepped: plain values for `transient`.
@@ -51,7 +61,7 @@ class Plan:
     the node of the engine's speed; ``springs``, ``watched``: absorber springs, and further connections, to be drawn;
     ``shown``: what happens, over time, by its name and quantity; ``inner``: parts of an absorber in detail, which get
     no row of their own; ``later``: lines that take the place of the first one, one after the other, at a constant
-    ``speed``; ``phases`` of what happens, to be marked.
+    ``speed``; ``phases`` of what happens, to be marked; ``release`` of a starter.
     """
 
     title: str
@@ -77,6 +87,7 @@ class Plan:
     following: float = FOLLOWING
     later: tuple[Span, ...] = ()
     phases: tuple[Phase, ...] = ()
+    release: Release | None = None
 
     def started(self, system: System) -> State:
         """Where it starts: as asked for, but turned, and part of it slower, and linings that hold a torque."""

@@ -52,6 +52,9 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     _refuse_coarse(plan)
     step = plan.step or STEP
     run, turning = moved(plan, step, max(OUTPUT, step), progress)
+    plan, again = _released(plan, run)
+    if again:
+        run, turning = moved(plan, step, max(OUTPUT, step), progress)
     run = from_zero(run)
     if plan.step is not None and "refined" in run.attrs:
         told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
@@ -64,6 +67,20 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     figures = with_figures(run, systems, (*plan.springs, *plan.watched), plan.inner)
     whole = phased(scheduled(figures, plan.shown), plan.phases, plan.crank)
     return whole.assign_attrs({**named, **told})
+
+
+def _released(plan: Plan, run: xr.Dataset) -> tuple[Plan, bool]:
+    """The plan with the starter off from the moment on at which the crank reached its speed in a ``run`` of the plan;
+    whether the starter pushed again behind it, so that the run is another one."""
+    if plan.release is None:
+        return plan, False
+    speed, free, until, off = plan.release
+    time, crank = run.time.values, run.angular_velocity.sel(node=plan.crank).values
+    reached = time[(crank >= speed) & (time < until)]
+    if not reached.size:
+        return plan, False
+    pushed = (crank < free) & (time > reached[0]) & (time < until)
+    return off(float(reached[0])), bool(pushed.any())
 
 
 def _refuse_coarse(plan: Plan) -> None:

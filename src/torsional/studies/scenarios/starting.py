@@ -13,7 +13,7 @@ from torsional.powertrain import Powertrain
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.studies.scenarios import sizes
 from torsional.studies.scenarios.lines import crank_of, in_neutral, inner_parts
-from torsional.studies.scenarios.plan import Plan
+from torsional.studies.scenarios.plan import Plan, Release
 from torsional.studies.scenarios.schedule import (
     cylinders,
     heat_for,
@@ -23,7 +23,10 @@ from torsional.studies.scenarios.schedule import (
     starter_motor,
     torque_pulse,
 )
+from torsional.units import show
 
+LEAST_OVERRUN = 1.1
+"""A starter's own speed times this is the least at which it is taken to be overrun by an engine that runs."""
 ANGLES = 2881
 """Crank angles of one cycle at which the resting place is looked for."""
 
@@ -36,8 +39,26 @@ def engine_start(block: EngineStart, model: Model) -> Plan:
     starter = starter_motor(block.starter, crank, sizes.torque(model, block.starter.torque, 0.5, "starter.torque"))
     governor = speed_governor(block.governor, crank, idle, block.firing_from)
     marks = {"starter": (pulse(0.0, block.starter.until, 1.0), ""), "firing": (pulse(block.firing_from, 1e9, 1.0), "")}
-    drives = (motor, starter, governor)
-    return Plan(**_alone(block, model, in_neutral(model)), drives=drives, speed=0.0, turned=resting(motor), shown=marks)
+    told: dict[str, Any] = {
+        "drives": (motor, starter, governor),
+        "shown": marks,
+        "release": _release(block, model, idle),
+    }
+    return Plan(**_alone(block, model, in_neutral(model)), **told, speed=0.0, turned=resting(motor))
+
+
+def _release(block: EngineStart, model: Model, idle: float) -> Release:
+    """When the starter is off for good: beyond its own speed, which it does not reach by itself."""
+    own = block.starter
+    speed = max(0.5 * (own.speed + idle), LEAST_OVERRUN * own.speed) if own.release is None else own.release
+    if speed <= own.speed:
+        told = {"found": show(speed, "speed"), "allowed": f"more than the starter's own {show(own.speed, 'speed')}"}
+        raise ModelError("the starter never gets there by itself", where="starter.release", **told)
+
+    def off(at: float) -> Plan:
+        return engine_start(block.model_copy(update={"starter": own.model_copy(update={"until": at})}), model)
+
+    return Release(speed, own.speed, own.until, off)
 
 
 def engine_stop(block: EngineStop, model: Model) -> Plan:
