@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from html import escape
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from torsional.components import Component
-from torsional.engine import Engine
+from torsional.engine import Engine, FullLoad
+from torsional.engine.orders import HALF_ORDERS, BoolArray
 from torsional.errors import ModelError, nearest
 from torsional.notebook import components_table, html_table
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain, exchanged, named
 from torsional.units import RPM
+
+NOTABLE = 0.05
+"""Share of the main order below which an engine's order is not worth a line in a diagram."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,16 @@ class Landmarks:
     input: str = ""
     springs: tuple[str, ...] = ()
     clutch: str = ""
+
+    @property
+    def observed_nodes(self) -> tuple[str, ...]:
+        """Nodes that analyses look at by default: the crankshaft and the node to be kept quiet."""
+        return tuple(node for node in dict.fromkeys((self.crankshaft, self.input)) if node)
+
+    @property
+    def observed_elements(self) -> tuple[str, ...]:
+        """Connections that analyses look at by default: the absorber's springs and the clutch damper."""
+        return tuple(name for name in dict.fromkeys((*self.springs, self.clutch)) if name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +118,20 @@ class Model:
         beside = {name: tuple(part for part in parts if part in self.components) for name, parts in rubbing.items()}
         return {name: (*members, *beside[name]) for name, members in found.items() if members}
 
-    def powertrain(self, gear: str | int | None = None) -> Powertrain:
-        """The powertrain with one gear engaged (default: the last listed)."""
-        name = self.top_gear if gear is None else str(gear)
+    def gear_name(self, gear: str | int | None = None) -> str:
+        """The name of one gear (default, or where empty: the last listed); raises ModelError for one it has not."""
+        name = self.top_gear if gear is None or gear == "" else str(gear)
         if name not in self.gear_names:
             raise ModelError(f"there is no gear '{name}'", where="gear", remedy=nearest(name, self.gear_names))
+        return name
+
+    def chosen_gears(self, gears: Sequence[str | int] | None = None) -> list[str]:
+        """The names of some gears (default: all of them), as asked for; raises ModelError for one it has not."""
+        return list(self.gear_names) if gears is None else [self.gear_name(gear) for gear in gears]
+
+    def powertrain(self, gear: str | int | None = None) -> Powertrain:
+        """The powertrain with one gear engaged (default, or where empty: the last listed)."""
+        name = self.gear_name(gear)
         engaged = self.gears[name].components if name else {}
         return Powertrain([*self.components.items(), *engaged.items()], self.parts, self.landmarks.crankshaft)
 
@@ -122,11 +146,67 @@ class Model:
 
     def full_load_peak(self) -> float:
         """The highest torque of the full-load curve [Nm]; raises ModelError without one."""
-        if self.engine is None or self.engine.full_load is None:
+        curve = self.full_load_curve
+        if curve is None:
             raise ModelError(
                 "the model has no full-load curve", where="engine.full_load", remedy="give operation.torque"
             )
-        return float(np.max(self.engine.full_load.torques))
+        return float(np.max(curve.torques))
+
+    @property
+    def running_engine(self) -> Engine:
+        """The engine; raises ModelError for a model without one."""
+        if self.engine is None:
+            remedy = "add an engine block"
+            raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy=remedy)
+        return self.engine
+
+    @property
+    def full_load_curve(self) -> FullLoad | None:
+        """The engine's full-load curve, None where there is none."""
+        return None if self.engine is None else self.engine.full_load
+
+    def full_load(self, speeds: ArrayLike) -> Array:
+        """Mean torque [Nm] at full load at each speed [rad/s]; without a curve `typical_torque` at each.
+
+        Raises ModelError where the curve does not reach a speed.
+        """
+        curve = self.full_load_curve
+        return np.full(np.shape(speeds), self.typical_torque()) if curve is None else curve(speeds)
+
+    def within_full_load(self, speeds: Array, torques: Array) -> BoolArray:
+        """Whether the engine reaches each torque [Nm] at each speed [rad/s], (torques, speeds), by its full-load curve.
+
+        Nowhere at speeds that the curve does not reach, everywhere where there is no curve.
+        """
+        if self.engine is None or self.engine.full_load is None:
+            return np.ones((len(torques), len(speeds)), dtype=bool)
+        return self.engine.within_full_load(speeds[None, :], torques[:, None])
+
+    def typical_torque(self) -> float:
+        """Mean engine torque [Nm] for modes: the full-load curve's highest, else the operating range's, else zero."""
+        if self.full_load_curve is not None:
+            return self.full_load_peak()
+        return float(self.operation.torque[1]) if self.operation.torque else 0.0
+
+    def engine_orders(self, count: int = 4) -> tuple[float, ...]:
+        """The strongest orders of the torques of all cylinders together, strongest first; the first is the main order.
+
+        Judged by the mean amplitude over the operating range at full load (without a curve: at `typical_torque`);
+        orders below a twentieth of the main one are left out.  A model without an engine has none.
+
+        >>> from torsional.engine import CrankLayout
+        >>> engine = Engine(bore=0.131, stroke=0.158, rod_length=0.2675, reciprocating_mass=4.2,
+        ...                 compression_ratio=18.1, layout=CrankLayout.inline((1, 5, 3, 6, 2, 4)))
+        >>> Model("six", {}, Landmarks(), engine=engine).engine_orders()[:2]
+        (3.0, 6.0)
+        """
+        if self.engine is None:
+            return ()
+        speeds = self.speeds(15)
+        size = np.abs(self.engine.harmonics(speeds, self.full_load(speeds), HALF_ORDERS).sum(axis=-2)).mean(axis=0)
+        ranked = np.argsort(-size, kind="stable")[:count]
+        return tuple(float(HALF_ORDERS[i]) for i in ranked if size[i] >= NOTABLE * size[ranked[0]])
 
     def detailed(self) -> Model:
         """The model as time-domain analyses take it, the absorber's inner parts in place; itself where it has none."""

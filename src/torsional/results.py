@@ -12,6 +12,7 @@ import xarray as xr
 
 from torsional.arguments import checked
 from torsional.errors import ModelError
+from torsional.model import Model
 from torsional.spreadsheet import BYTE_ORDER_MARK, csv_text
 from torsional.units import QUANTITIES
 
@@ -47,6 +48,12 @@ def dataset(
     settings = {key: value if isinstance(value, plain) else json.dumps(value) for key, value in provenance.items()}
     attrs = {"analysis": analysis, "torsional_version": __version__, "schema": SCHEMA, **settings}
     return xr.Dataset(data, coords, attrs)
+
+
+def of_model(data: xr.Dataset, model: Model, gear: str | None = None) -> xr.Dataset:
+    """The result with the model it is of in its attributes, and the ``gear`` where it is of one alone."""
+    engaged = {} if gear is None else {"gear": gear}
+    return data.assign_attrs(model=model.name, model_hash=model.hash, **engaged)
 
 
 def _coordinate(name: str, values: Any, quantity: str, dimension: str = "") -> xr.Variable:

@@ -14,6 +14,7 @@ from torsional.errors import ModelError, nearest
 from torsional.nomenclature import CANONICAL, QUANTITIES, UNITS, Quantity, pretty
 
 __all__ = [
+    "GRAVITY",
     "QUANTITIES",
     "RPM",
     "UNITS",
@@ -29,6 +30,9 @@ __all__ = [
 
 RPM = math.pi / 30
 """One revolution per minute in rad/s: ``1500 * RPM`` is a speed, and ``speed / RPM`` a number of rpm."""
+
+GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s²]."""
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _LONGEST = 120

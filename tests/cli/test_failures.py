@@ -32,7 +32,7 @@ BAD = [
     (["modes", TRUCK, "--order", "0"], ["--order", "positive", "found 0"]),
     (["modes", TRUCK, "--speed", "-10rpm"], ["--speed", "backwards", "found -10 rpm"]),
     (["map", TRUCK, "--speed", "-600:900rpm"], ["--speed", "backwards", "found -600 rpm"]),
-    (["map", TRUCK, "--speed", "600:3000rpm"], ["full_load", "(600 rpm) to 209.44 rad/s (2000 rpm)"]),
+    (["respond", TRUCK, "--speed", "600:3000rpm"], ["full_load", "(600 rpm) to 209.44 rad/s (2000 rpm)"]),
     (["respond", TRUCK, "--orders", "0.5:x"], ["--orders", "a number is wanted"]),
     (["respond", TRUCK, "--node", "gearbox_imput"], ["--node", "did you mean 'gearbox_input'?"]),
     (["map", TRUCK, "--element", "clutsch"], ["--element", "did you mean 'clutch'?"]),

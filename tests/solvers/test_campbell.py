@@ -14,7 +14,7 @@ from torsional.engine import CrankLayout
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.model import Landmarks, Model
-from torsional.solvers.campbell import campbell, engine_orders, typical_torque
+from torsional.solvers.campbell import campbell
 from torsional.solvers.map import response_map
 from torsional.solvers.run_up import full_load_response
 
@@ -94,7 +94,7 @@ def test_main_order_is_half_the_number_of_evenly_fired_cylinders(layout: CrankLa
     truck = example("truck_dmf")
     assert truck.engine is not None
     engine = dataclasses.replace(truck.engine, layout=layout)
-    assert engine_orders(truck.replaced(engine=engine))[0] == main
+    assert truck.replaced(engine=engine).engine_orders()[0] == main
 
 
 def test_three_of_six_cylinders_halve_the_main_order() -> None:
@@ -103,13 +103,13 @@ def test_three_of_six_cylinders_halve_the_main_order() -> None:
     engine = dataclasses.replace(truck.engine, deactivated=(2, 3, 1), full_load=None)
     operation = dataclasses.replace(truck.operation, torque=(0.0, 800.0))
     half = truck.replaced(engine=engine, operation=operation)
-    assert typical_torque(half) == 800.0
-    assert engine_orders(half)[0] == 1.5
+    assert half.typical_torque() == 800.0
+    assert half.engine_orders()[0] == 1.5
 
 
 def test_a_model_without_an_engine_has_no_orders() -> None:
     found = campbell(example("mwm_engine"))
-    assert engine_orders(example("mwm_engine")) == ()
+    assert example("mwm_engine").engine_orders() == ()
     assert found.crossing.shape == (1, 9, 0)
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from torsional.components import Inertia
-from torsional.solvers.map import HALF_ORDERS
+from torsional.engine.orders import HALF_ORDERS
 from torsional.solvers.operating import operated
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import input_shaft, main_order, responded
-from torsional.studies.claims.excitation import crossing, full_load
+from torsional.studies.claims.excitation import crossing
 from torsional.studies.claims.trucks import Trucks, lumped
 from torsional.units import RPM
 
@@ -38,7 +38,7 @@ def test_a1_figures(outcomes: dict[str, Outcome]) -> None:
 def test_a1_crossing_is_where_the_load_runs_out(trucks: Trucks) -> None:
     speed = np.linspace(600, 2000, 57) * RPM
     assert speed[crossing(trucks.smf, speed)].min() > 1900 * RPM
-    assert full_load(trucks.smf, speed)[0] == pytest.approx(1300.0)
+    assert trucks.smf.full_load(speed)[0] == pytest.approx(1300.0)
 
 
 def test_a13_the_lumped_engine_keeps_its_inertia(trucks: Trucks) -> None:

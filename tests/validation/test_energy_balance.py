@@ -36,7 +36,7 @@ def operated(path: Path, share: float, gear: str) -> tuple[tv.System, tv.Excitat
         torque = np.random.default_rng(1).normal(size=(2, 9, 3, len(ORDERS)))
         return system, tv.Excitation(system.nodes[2:5], ORDERS, speeds, torque[0] + 1j * torque[1])
     mean = share * float(machine.torques(2)[-1])
-    system, _ = tv.operated(machine, mean, gear or None)
+    system, _ = tv.operated(machine, mean, gear)
     return system, machine.engine.excitation(machine.landmarks.throws, speeds, mean, ORDERS)
 
 
@@ -47,7 +47,7 @@ def power(torque: np.ndarray, angle: np.ndarray, omega: np.ndarray) -> np.ndarra
 
 def twists(path: Path, gear: str, angle: xr.DataArray) -> dict[str, tuple[tv.Connection, np.ndarray]]:
     """Relative angle of every connection from the angles of its nodes."""
-    stamps = [stamp for stamp in model(path).powertrain(gear or None).stamps if isinstance(stamp, tv.Connection)]
+    stamps = [stamp for stamp in model(path).powertrain(gear).stamps if isinstance(stamp, tv.Connection)]
     still = np.zeros(angle.shape[:2], complex)
     by_node = {**{str(node): angle.sel(node=node).values for node in angle.node.values}, "ground": still}
     return {c.name: (c, sum((w * by_node[n] for n, w in c.weights.items()), still)) for c in stamps}

@@ -52,7 +52,7 @@ def run(request: Request, gear: str, torque: str, expand: bool) -> None:
 
 def checked_model(model: Model, gear: str, torque: float) -> Document:
     """Everything that is told of a model in one gear under a mean torque [Nm]."""
-    system, point = operated(model, torque, gear or None)
+    system, point = operated(model, torque, gear)
     springs, elastic = list(standing(model, point)), list(first_modes(model, system, inputs.speed(model, "")))
     warnings = [*warnings_of(model), *doubts(elastic, torque, springs)]
     if not (system.connections.damping.any() or system.connections.loss_factor.any()):
@@ -76,7 +76,7 @@ def _expand(request: Request) -> None:
 
 def summary(model: Model, gear: str) -> Document:
     """What the file holds."""
-    powertrain, operation, marks = model.powertrain(gear or None), model.operation, model.landmarks
+    powertrain, operation, marks = model.powertrain(gear), model.operation, model.landmarks
     engine = model.engine
     told: Document = {
         "absorber": model.absorber or None,

@@ -41,7 +41,7 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
     pace = _positive(typed.read(rate, "angular_velocity", "--rate") if rate else RATE, "--rate", rate)
     centre = typed.read(about, "relative_angle", "--about") if about else 0.0
     ends = chosen_ends(machine, turned, held)
-    system = assemble(machine.detailed().powertrain(engaged or None))
+    system = assemble(machine.detailed().powertrain(engaged))
     own = f"{within_stops(system, ends, machine.landmarks.springs)} rad"
     sweeps = listed(sweep or own, "relative_angle", "--sweep")
     _positive(float(sweeps.min()), "--sweep", sweep)

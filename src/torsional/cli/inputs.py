@@ -48,10 +48,8 @@ def torque(model: Model, text: str, over: Sequence[float] | Array = ()) -> float
 
     What lies above full load at all speeds ``over`` which it is asked for [rad/s] (none: at any speed) is told.
     """
-    from torsional.solvers.campbell import typical_torque
-
     if not text:
-        return typical_torque(model)
+        return model.typical_torque()
     value = _value(text, "torque", "--torque")
     warn_overload(model, value, over)
     return value
@@ -63,7 +61,7 @@ def speed(model: Model, text: str) -> float:
         value = _value(text, "speed", "--speed")
         warn_off_range(model, [value])
         return value
-    curve = model.engine.full_load if model.engine else None
+    curve = model.full_load_curve
     if curve is None:
         return float(np.mean(model.operation.speed))
     return float(curve.speeds[int(np.argmax(curve.torques))])
@@ -89,10 +87,10 @@ def torques(model: Model, text: str, count: int) -> Array:
 
 def warn_off_range(model: Model, speeds: Sequence[float] | Array) -> None:
     """Say that an engine does not run at some of these speeds [rad/s]: neither its curve nor its file knows them."""
-    if "operation" not in model.document and (model.engine is None or model.engine.full_load is None):
+    curve = model.full_load_curve
+    if "operation" not in model.document and curve is None:
         return
-    known = [*model.operation.speed]
-    known += [] if model.engine is None or model.engine.full_load is None else [*model.engine.full_load.speeds]
+    known = [*model.operation.speed, *(curve.speeds if curve else ())]
     low, high = min(known), max(known)
     beyond = [speed for speed in speeds if not (1 - 1e-9) * low <= speed <= (1 + 1e-9) * high]
     if beyond:
@@ -103,7 +101,7 @@ def warn_off_range(model: Model, speeds: Sequence[float] | Array) -> None:
 
 def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = ()) -> None:
     """Say that a mean torque [Nm] lies above full load at each of the speeds [rad/s], or at any where none is named."""
-    curve = model.engine.full_load if model.engine else None
+    curve = model.full_load_curve
     if curve is None:
         return
     speeds, torques = np.asarray(curve.speeds), np.asarray(curve.torques)

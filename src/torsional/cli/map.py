@@ -15,8 +15,9 @@ from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.progress import progress
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
+from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
-from torsional.solvers.map import HALF_ORDERS, response_map
+from torsional.solvers.map import response_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,7 +43,7 @@ def run(
     nodes, elements = chosen_places(machine, gears[-1], node, element)
     n = HALF_ORDERS if asked is None else asked
     kept = len(gears) * (len(nodes) + len(elements))
-    width = len(machine.powertrain(gears[-1] or None).nodes) + 2 * len(machine.landmarks.throws) + kept
+    width = len(machine.powertrain(gears[-1]).nodes) + 2 * len(machine.landmarks.throws) + kept
     inputs.affordable(len(speeds) * len(torques) * len(n), width)
     with progress("gears", request.quiet or request.as_json) as moved:
         found = response_map(machine, speeds, torques, gears, n, nodes=nodes, elements=elements, progress=moved)

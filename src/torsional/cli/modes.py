@@ -15,7 +15,6 @@ from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
 from torsional.model import Model
 from torsional.quantities import named_modes, order_speed
-from torsional.solvers.campbell import engine_orders
 from torsional.solvers.modal import damped_modes, modal
 from torsional.solvers.operating import operated
 from torsional.units import show
@@ -40,7 +39,7 @@ def run(
     at = inputs.speed(machine, speed)
     mean = inputs.torque(machine, torque, [at] if speed else [])
     asked = inputs.orders(None if order is None else [order], "")
-    main = float(asked[0]) if asked is not None else next(iter(engine_orders(machine)), None)
+    main = float(asked[0]) if asked is not None else next(iter(machine.engine_orders()), None)
     found = [modes_of(machine, name, mean, at, main) for name in names]
     settings = {"gears": names, "torque": amount(mean, "torque"), "speed": amount(at, "speed"), "order": main}
     tables = [_table(data, name, settings) for data, name in zip(found, names, strict=True)]
@@ -56,7 +55,7 @@ def run(
 
 def modes_of(model: Model, gear: str, torque: float, speed: float, order: float | None) -> xr.Dataset:
     """What `modal` finds, with names, the damped modes next to it, and the speed at which the order meets each mode."""
-    system, _ = operated(model, torque, gear or None)
+    system, _ = operated(model, torque, gear)
     found, damped = modal(system, speed), damped_modes(system, speed)
     partner = paired(found, damped)
     result = found.assign(
@@ -128,4 +127,4 @@ def at_torque(settings: Mapping[str, object]) -> str:
 def _picture(model: Model, data: xr.Dataset, gear: str) -> Figure:
     from torsional.plots import plot_mode_shapes
 
-    return plot_mode_shapes(data, model.powertrain(gear or None), names=[str(name) for name in data.name.values])
+    return plot_mode_shapes(data, model.powertrain(gear), names=[str(name) for name in data.name.values])

@@ -88,7 +88,7 @@ def run(
     place = f"{in_gear(engaged)}, {span.told}"
     told = "" if chosen is None else show(chosen, span.quantity) + place
     motions = None if chosen is None else solutions_at(data, chosen)
-    c = assemble(machine.powertrain(engaged or None)).connections
+    c = assemble(machine.powertrain(engaged)).connections
     stiffness = dict(zip(c.names, map(float, c.stiffness), strict=True))
     view = View(
         data,
@@ -164,7 +164,7 @@ def _picture(view: View) -> Figure:
 
 def laws_of(model: Model, gear: str) -> dict[str, Law | None]:
     """The laws of all connections; ModelError, with the springs that could have stages, for a model without any."""
-    powertrain = model.powertrain(gear or None)
+    powertrain = model.powertrain(gear)
     c = assemble(powertrain).connections
     laws = dict(zip(c.names, c.laws, strict=True))
     if not any(law is not None for law in laws.values()):
@@ -195,12 +195,10 @@ def solved(model: Model, gear: str, span: Span, at: float | None, isolated: bool
     values = np.append(np.linspace(span.low, span.high, smooth), [] if at is None else at)
     ends = (span.low, span.high)
     if span.name == "speed":
-        return model_response(model, ends, span.torque, gear or None, at=values, isolated=isolated)
+        return model_response(model, ends, span.torque, gear, at=values, isolated=isolated)
     path = "torque" if span.name == "mean_torque" else span.name
     assert span.speed is not None
-    data = varied_response(
-        model, path, ends, span.speed, span.torque or 0.0, gear or None, at=values, isolated=isolated
-    )
+    data = varied_response(model, path, ends, span.speed, span.torque or 0.0, gear, at=values, isolated=isolated)
     entry = QUANTITIES[span.quantity]
     told = {"quantity": entry.name, "units": entry.unit}
     return data.assign_coords(value=data.value.assign_attrs(told)).assign_attrs(parameter_unit=entry.unit)

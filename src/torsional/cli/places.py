@@ -16,14 +16,14 @@ def chosen_places(
     model: Model, gear: str, nodes: Sequence[str] | None, elements: Sequence[str] | None
 ) -> tuple[list[str], list[str]]:
     """The nodes and connections named, or 'all'; if none is named, the model's landmarks."""
-    marks, system = model.landmarks, assemble(model.powertrain(gear or None))
+    marks, system = model.landmarks, assemble(model.powertrain(gear))
     if nodes or elements:
         found = (
             _known(nodes or (), system.nodes, "--node"),
             _known(elements or (), system.connections.names, "--element"),
         )
     else:
-        found = [marks.crankshaft, marks.input], [*marks.springs, marks.clutch]
+        found = list(marks.observed_nodes), list(marks.observed_elements)
     kept = [[name for name in dict.fromkeys(names) if name] for names in found]
     if not any(kept):
         remedy = "name some by --node and --element, or give the file landmarks"

@@ -16,11 +16,10 @@ from torsional.cli.modes import in_gear
 from torsional.cli.places import chosen_places, together, without_empty
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
+from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
-from torsional.solvers.campbell import full_load
-from torsional.solvers.map import HALF_ORDERS
 from torsional.solvers.run_up import run_up_response
 from torsional.system import assemble
 from torsional.units import show
@@ -46,11 +45,11 @@ def run(
     """Answer the command."""
     machine = request.model
     engaged, speeds = inputs.one_gear(machine, gear), inputs.speeds(machine, speed, SPEEDS)
-    mean = np.full(len(speeds), inputs.torque(machine, torque, speeds)) if torque else full_load(machine, speeds)
+    mean = np.full(len(speeds), inputs.torque(machine, torque, speeds)) if torque else machine.full_load(speeds)
     asked = inputs.orders(order, orders)
     n = HALF_ORDERS if asked is None else asked
     places = chosen_places(machine, engaged, node, element)
-    inputs.affordable(len(speeds) * len(n), 4 * len(machine.powertrain(engaged or None).components))
+    inputs.affordable(len(speeds) * len(n), 4 * len(machine.powertrain(engaged).components))
     data = response(machine, engaged, speeds, mean, n, *places)
     loaded: object = amount(float(mean[0]), "torque") if torque else "full load"
     settings = {"gear": engaged, "torque": loaded, "orders": data.order.values}
@@ -65,7 +64,7 @@ def response(
     model: Model, gear: str, speeds: Array, torques: Array, orders: Array, nodes: Sequence[str], elements: Sequence[str]
 ) -> xr.Dataset:
     """`run_up_response` at some places, and of all orders `together` the swings over speed beside their bounds."""
-    found = run_up_response(model, speeds, torques, gear or None, orders)
+    found = run_up_response(model, speeds, torques, gear, orders)
     _warn_crossed(model, gear, found)
     found = found.sel(node=list(nodes), element=list(elements))
     return without_empty(found.drop_vars(("twist", "mean_twist")).assign(together(found.angle, found.torque)))
@@ -80,7 +79,7 @@ def tables(data: xr.Dataset, title: str, chosen: bool = False) -> list[Table]:
 
 def _warn_crossed(model: Model, gear: str, found: xr.Dataset) -> None:
     """Say where a spring's swing runs across a stage, its free play or its stop, and where friction slips."""
-    c = assemble(model.powertrain(gear or None)).connections
+    c = assemble(model.powertrain(gear)).connections
     for name, law in zip(c.names, c.laws, strict=True):
         if law is not None:
             mean, half = found.mean_twist.sel(element=name), swing(found.twist.sel(element=name))

@@ -18,13 +18,14 @@ from torsional.cli.progress import progress
 from torsional.cli.tables import Column, Table, print_tables
 from torsional.components import Component, Coupling, Inertia
 from torsional.engine import Excitation
+from torsional.engine.orders import HALF_ORDERS
 from torsional.files import changed, load_model, starter
 from torsional.model import Model
 from torsional.numerics.callbacks import address_of
 from torsional.powertrain import Powertrain
 from torsional.solvers.campbell import campbell
 from torsional.solvers.hysteresis import hysteresis
-from torsional.solvers.map import HALF_ORDERS, response_map
+from torsional.solvers.map import response_map
 from torsional.solvers.periodic import model_response, periodic_response, subharmonic_map
 from torsional.system import assemble
 from torsional.units import RPM

@@ -273,9 +273,7 @@ class Engine:
 
     def full_load_torque(self, speed: ArrayLike) -> FloatArray:
         """Full-load torque [Nm] at each speed [rad/s]; ModelError without a curve or outside it."""
-        if self.full_load is None:
-            raise ModelError("the engine has no full-load curve", where="full_load", remedy="give speeds and torques")
-        return self.full_load(speed)
+        return self._curve()(speed)
 
     def torque_grid(self, speed: ArrayLike, load: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Speeds (speeds, 1) [rad/s] and mean torques (speeds, loads) [Nm], ``load`` being fractions of full load.
@@ -286,5 +284,13 @@ class Engine:
         return speeds, np.asarray(self.full_load_torque(speeds) * np.atleast_1d(np.asarray(load, dtype=float)))
 
     def within_full_load(self, speed: ArrayLike, mean_torque: ArrayLike) -> BoolArray:
-        """Whether the torque [Nm] is at or below the full-load curve, boolean, in the broadcast shape."""
-        return np.asarray(np.asarray(mean_torque, dtype=float) <= self.full_load_torque(speed) * (1.0 + 1e-12))
+        """Whether the torque [Nm] is at or below the full-load curve, boolean, in the broadcast shape.
+
+        Speeds [rad/s] that the curve does not reach are beyond it.  Raises ModelError without a curve.
+        """
+        return self._curve().allows(speed, mean_torque)
+
+    def _curve(self) -> FullLoad:
+        if self.full_load is None:
+            raise ModelError("the engine has no full-load curve", where="full_load", remedy="give speeds and torques")
+        return self.full_load

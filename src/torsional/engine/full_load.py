@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.checks import not_negative, positive
-from torsional.engine.orders import FloatArray
+from torsional.engine.orders import BoolArray, FloatArray
 from torsional.errors import ModelError
 from torsional.units import show_speed
 
@@ -43,8 +43,7 @@ class FullLoad:
     def __call__(self, speed: ArrayLike) -> FloatArray:
         """Full-load torque [Nm], in the shape of the speed [rad/s]; ModelError outside the curve."""
         asked = np.asarray(speed, dtype=float)
-        slack = 1e-9 * self.speeds[-1]  # rpm converted to rad/s and back
-        outside = ~((asked >= self.speeds[0] - slack) & (asked <= self.speeds[-1] + slack))
+        outside = ~self.reaches(asked)
         if outside.any():
             raise ModelError(
                 "the full-load curve does not reach this speed",
@@ -53,3 +52,15 @@ class FullLoad:
                 allowed=f"{show_speed(self.speeds[0])} to {show_speed(self.speeds[-1])}",
             )
         return np.asarray(np.interp(asked, self.speeds, self.torques))
+
+    def reaches(self, speed: ArrayLike) -> BoolArray:
+        """Whether the curve has the speeds [rad/s], boolean, in their shape."""
+        asked = np.asarray(speed, dtype=float)
+        slack = 1e-9 * self.speeds[-1]  # rpm converted to rad/s and back
+        return np.asarray((asked >= self.speeds[0] - slack) & (asked <= self.speeds[-1] + slack))
+
+    def allows(self, speed: ArrayLike, torque: ArrayLike) -> BoolArray:
+        """Whether torques [Nm] at speeds [rad/s] are at or below the curve, boolean; never where it does not reach."""
+        reached = self.reaches(speed)
+        most = self(np.where(reached, speed, self.speeds[0]))
+        return np.asarray(reached & (np.asarray(torque, dtype=float) <= most * (1.0 + 1e-12)))

@@ -24,8 +24,14 @@ CYCLE = 4.0 * np.pi
 SAMPLES = 1440
 """Samples of one cycle: every half degree, 720° itself left out (it is 0° again)."""
 
-HIGHEST_ORDER = SAMPLES / 8
+LAST_SAMPLED_ORDER = SAMPLES / 8
 """Highest order given out: four samples and more a period, so that aliases stay below the series' own tail."""
+
+HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
+"""Orders of analyses in the frequency domain where none are asked for."""
+
+HIGHEST_ORDER = 18.0
+"""Highest order of periodic and steady motions where none is asked for."""
 
 
 def crank_angle_grid(samples: int = SAMPLES) -> FloatArray:
@@ -41,19 +47,19 @@ def checked_orders(orders: ArrayLike) -> FloatArray:
     """The orders as a 1-D array, each an exact multiple of 0.5.
 
     Raises ModelError for an order that a four-stroke engine cannot have: negative, not a multiple of one half, above
-    ``HIGHEST_ORDER``, given twice.
+    ``LAST_SAMPLED_ORDER``, given twice.
     """
     found = np.atleast_1d(np.asarray(orders, dtype=float))
     if found.ndim != 1 or found.size == 0:
         raise ModelError("a list of orders is needed", where="orders", found=f"an array of shape {found.shape}")
     twice = np.round(2.0 * found)
-    wrong = ~np.isfinite(found) | (np.abs(2.0 * found - twice) > 1e-9) | (found < 0) | (found > HIGHEST_ORDER)
+    wrong = ~np.isfinite(found) | (np.abs(2.0 * found - twice) > 1e-9) | (found < 0) | (found > LAST_SAMPLED_ORDER)
     if wrong.any():
         raise ModelError(
             "a four-stroke engine has the orders 0, 0.5, 1, 1.5 …",
             where="orders",
             found=f"{found[wrong][0]:g}",
-            allowed=f"multiples of 0.5 from 0 to {HIGHEST_ORDER:g}",
+            allowed=f"multiples of 0.5 from 0 to {LAST_SAMPLED_ORDER:g}",
         )
     if np.unique(twice).size < twice.size:
         raise ModelError("an order is given twice", where="orders", found=", ".join(f"{n:g}" for n in found))

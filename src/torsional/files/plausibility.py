@@ -32,7 +32,7 @@ def warnings_of(model: Model) -> list[str]:
 
 def _beyond_the_curve(model: Model) -> list[str]:
     """Speeds of the analyses that the full-load curve does not reach."""
-    curve = model.engine.full_load if model.engine else None
+    curve = model.full_load_curve
     low, high = model.operation.speed
     if curve is None or model.operation.torque is not None:
         return []
@@ -45,7 +45,7 @@ def _beyond_the_curve(model: Model) -> list[str]:
 
 def _below_full_load(file: ModelFile, model: Model) -> list[str]:
     """A stop that full load reaches: steady running on the stop is no one's intention."""
-    if model.engine is None or model.engine.full_load is None:
+    if model.full_load_curve is None:
         return []
     stop = _stop_torque(model)
     if file.absorber is None or stop is None or stop > file.absorber.spring_share() * model.full_load_peak():

@@ -15,7 +15,7 @@ from torsional.quantities import acceleration, irregularity, named_modes, swing
 from torsional.report.labels import labels
 from torsional.report.motions import Motions, sought
 from torsional.results import dataset
-from torsional.solvers.campbell import campbell, full_load
+from torsional.solvers.campbell import campbell
 from torsional.solvers.map import response_map
 from torsional.solvers.run_up import full_load_response
 
@@ -125,7 +125,7 @@ def analysed(
 def usable_speeds(model: Model) -> tuple[float, float]:
     """The operating range [rad/s], cut to where the full-load curve reaches."""
     low, high = model.operation.speed
-    curve = model.engine.full_load if model.engine is not None else None
+    curve = model.full_load_curve
     if curve is None:
         return low, high
     low, high = max(low, curve.speeds[0]), min(high, curve.speeds[-1])
@@ -135,7 +135,7 @@ def usable_speeds(model: Model) -> tuple[float, float]:
 
 
 def _grid(model: Model, speeds: int, torques: int) -> tuple[Array, Array]:
-    curved = model.engine is not None and model.engine.full_load is not None
+    curved = model.full_load_curve is not None
     loads = model.torques(torques) if curved or model.operation.torque else np.zeros(1)
     return np.linspace(*usable_speeds(model), speeds), loads
 
@@ -209,9 +209,9 @@ def _idle(model: Model) -> xr.DataArray | None:
     idle, node = model.operation.idle, model.landmarks.crankshaft
     least = model.operation.torque[0] if model.operation.torque else 0.0
     loads = {"least mean torque": least}
-    curve = model.engine.full_load if model.engine is not None else None
+    curve = model.full_load_curve
     if curve is not None and curve.speeds[0] * (1 - 1e-9) <= idle <= curve.speeds[-1]:
-        loads["full load"] = float(full_load(model, np.array([idle]))[0])
+        loads["full load"] = float(model.full_load(idle))
     if not node:
         return None
     found = []

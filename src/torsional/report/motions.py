@@ -54,14 +54,14 @@ def motions_of(model: Model, speeds: tuple[float, float]) -> Motions | None:
     Raises ModelError where they cannot be found.
     """
     gear = model.top_gear
-    c = assemble(model.powertrain(gear or None)).connections
+    c = assemble(model.powertrain(gear)).connections
     staged = {name: law for name, law in zip(c.names, c.laws, strict=True) if has_stages(law)}
     if model.engine is None or not staged:
         return None
     element = next((name for name in model.landmarks.springs if name in staged), next(iter(staged)))
     low, high = speeds
-    region = sought_region(model, np.linspace(low, high, SPEEDS), model.torques(TORQUES), gear or None, element=element)
-    full = model_response(model, speeds, None, gear or None, at=np.linspace(low, high, BETWEEN))
+    region = sought_region(model, np.linspace(low, high, SPEEDS), model.torques(TORQUES), gear, element=element)
+    full = model_response(model, speeds, None, gear, at=np.linspace(low, high, BETWEEN))
     law, stiffness = staged[element], float(c.stiffness[c.names.index(element)])
     assert law is not None
     shown = {"gear": gear, "element": element, "law": law, "stiffness": stiffness, "node": str(region.attrs["node"])}
@@ -70,7 +70,7 @@ def motions_of(model: Model, speeds: tuple[float, float]) -> Motions | None:
     if at is None:
         return Motions(**found)
     values = np.append(np.linspace(low, high, BETWEEN), at["speed"])
-    return Motions(**found, branches=model_response(model, speeds, at["torque"], gear or None, at=values), at=at)
+    return Motions(**found, branches=model_response(model, speeds, at["torque"], gear, at=values), at=at)
 
 
 def has_stages(law: Law | None) -> bool:

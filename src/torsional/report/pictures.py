@@ -19,7 +19,7 @@ def in_gear(gear: str) -> str:
 
 def chain_picture(variant: Variant, gear: str) -> Picture:
     """The powertrain as discs and springs."""
-    marks, powertrain = variant.model.landmarks, variant.model.powertrain(gear or None)
+    marks, powertrain = variant.model.landmarks, variant.model.powertrain(gear)
     figure = plots.plot_chain(powertrain, absorber=marks.springs, clutch=marks.clutch, throws=marks.throws)
     caption = (
         f"The powertrain{in_gear(gear)}. A disc's height is the fourth root of its inertia referred to the speed of "
@@ -39,7 +39,7 @@ def shape_picture(variant: Variant, gear: str) -> Picture:
     """Mode shapes of one gear."""
     modes = _shaped(variant, gear)
     names = variant.names[gear]
-    figure = plots.plot_mode_shapes(modes, variant.model.powertrain(gear or None), names=names)
+    figure = plots.plot_mode_shapes(modes, variant.model.powertrain(gear), names=names)
     caption = (
         f"The lowest mode shapes{in_gear(gear)}. A steep step between two neighbours is a spring that is strained; a "
     )
@@ -49,7 +49,7 @@ def shape_picture(variant: Variant, gear: str) -> Picture:
 
 def _shaped(variant: Variant, gear: str) -> xr.Dataset:
     """The modes with their shapes, linearised as the interference diagram is."""
-    system, _ = operated(variant.model, float(variant.interference.attrs["mean_torque"]), gear or None)
+    system, _ = operated(variant.model, float(variant.interference.attrs["mean_torque"]), gear)
     modes = modal(system, float(variant.modes(gear).speed))
     return modes.assign_attrs(drawn=min(5, int((modes.frequency > 0).sum())))
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from torsional import plots
+from torsional.engine.orders import HALF_ORDERS
 from torsional.plots import style
 from torsional.plots.maps import colour_limits
 from torsional.quantities import bound, swing
@@ -19,7 +20,6 @@ from torsional.report.pictures import in_gear
 from torsional.report.springs import Spring
 from torsional.report.travels import widest
 from torsional.results import dataset
-from torsional.solvers.campbell import CANDIDATES, full_load
 
 
 def engine_pictures(variant: Variant) -> list[Picture]:
@@ -28,13 +28,13 @@ def engine_pictures(variant: Variant) -> list[Picture]:
     assert response is not None and engine is not None
     curve = response.curve
     chosen = np.unique([curve.speed[0], curve.speed[int(curve.argmax("speed"))], curve.speed[int(0.75 * curve.size)]])
-    size = engine.harmonics(chosen, full_load(variant.model, chosen), CANDIDATES).sum(axis=-2)
+    size = engine.harmonics(chosen, variant.model.full_load(chosen), HALF_ORDERS).sum(axis=-2)
     harmonics = dataset(
         {"torque": (("speed", "order"), size, "torque")},
-        {"speed": (chosen, "speed"), "order": (CANDIDATES, "engine_order")},
+        {"speed": (chosen, "speed"), "order": (HALF_ORDERS, "engine_order")},
         analysis="engine orders",
     ).torque
-    main = float(np.abs(size[:, variant.main_order == CANDIDATES]).max())
+    main = float(np.abs(size[:, variant.main_order == HALF_ORDERS]).max())
     orders = picture(
         plots.plot_engine_orders(harmonics),
         f"Torque of all cylinders together by order at full load. Order {variant.main_order:g} is the main one, up to "

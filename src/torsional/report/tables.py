@@ -65,7 +65,7 @@ def _engine_rows(model: Model) -> list[tuple[str, str]]:
 
 def inertia_table(variant: Variant, gear: str) -> Table:
     """Every mass with its own and its referred inertia."""
-    powertrain = variant.model.powertrain(gear or None)
+    powertrain = variant.model.powertrain(gear)
     referred = chain(powertrain)
     rows = []
     for stamp in powertrain.stamps:
@@ -81,7 +81,7 @@ def inertia_table(variant: Variant, gear: str) -> Table:
 
 def connection_table(variant: Variant, gear: str) -> Table:
     """Every connection with its stiffness and damping, and every gear."""
-    powertrain = variant.model.powertrain(gear or None)
+    powertrain = variant.model.powertrain(gear)
     stiff = {link.name: link.described for link in chain(powertrain).links}
     rows = []
     for stamp in powertrain.stamps:

@@ -13,13 +13,10 @@ from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.results import dataset
+from torsional.results import dataset, of_model
 from torsional.solvers.modal import modal, natural_frequencies
 from torsional.solvers.operating import operated
 from torsional.system import System
-
-CANDIDATES = np.arange(0.5, 12.5, 0.5)
-NOTABLE = 0.05
 
 
 @checked
@@ -32,9 +29,9 @@ def campbell(
 ) -> xr.Dataset:
     """Natural frequencies of a ``model`` over engine speed in every gear, and the speeds at which orders meet them.
 
-    The system is linearised about the mean engine ``torque`` [Nm] (default: `typical_torque`); ``speeds`` [rad/s]
-    (default: up to the highest of the operating range); ``orders`` (default: `engine_orders`).  ``frequency`` [Hz] and
-    ``damping_ratio`` (gear, speed, mode), ``elastic_share`` (gear, speed, mode, element); ``crossing``
+    The system is linearised about the mean engine ``torque`` [Nm] (default: `Model.typical_torque`); ``speeds`` [rad/s]
+    (default: up to the highest of the operating range); ``orders`` (default: `Model.engine_orders`).  ``frequency``
+    [Hz] and ``damping_ratio`` (gear, speed, mode), ``elastic_share`` (gear, speed, mode, element); ``crossing``
     (gear, mode, order) [rad/s], the speed with n Ω = 2π f(Ω), NaN where there is none: for a mode that does not depend
     on speed wherever it lies, else the lowest among the speeds.  Raises ModelError as `equilibrium` does.
 
@@ -45,14 +42,14 @@ def campbell(
     >>> round(float(met) * 30 / np.pi, 1)  # rpm: 20 f for the third order
     3521.5
     """
-    mean = typical_torque(model) if torque is None else float(torque)
-    names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
+    mean = model.typical_torque() if torque is None else float(torque)
+    names = model.chosen_gears(gears)
     at = _speeds(model) if speeds is None else np.atleast_1d(np.asarray(speeds, dtype=float))
-    n = np.asarray(engine_orders(model) if orders is None else orders, dtype=float)
-    lines = [_line(operated(model, mean, gear or None)[0], at, n) for gear in names]
+    n = np.asarray(model.engine_orders() if orders is None else orders, dtype=float)
+    lines = [_line(operated(model, mean, gear)[0], at, n) for gear in names]
     elements = list(dict.fromkeys(element for line in lines for element in line.elements))
     count = max(line.frequency.shape[1] for line in lines)
-    return dataset(
+    found = dataset(
         {
             "frequency": (("gear", "speed", "mode"), _stacked([l.frequency for l in lines], count, 1), "frequency"),
             "damping_ratio": (
@@ -71,49 +68,9 @@ def campbell(
             "element": (np.array(elements), ""),
         },
         analysis="campbell",
-        model=model.name,
-        model_hash=model.hash,
         mean_torque=mean,
     )
-
-
-def typical_torque(model: Model) -> float:
-    """Mean engine torque [Nm] for modes: the full-load curve's highest, else the operating range's, else zero."""
-    if model.engine is not None and model.engine.full_load is not None:
-        return model.full_load_peak()
-    return float(model.operation.torque[1]) if model.operation.torque else 0.0
-
-
-def engine_orders(model: Model, count: int = 4) -> tuple[float, ...]:
-    """The strongest orders of the torques of all cylinders together, strongest first; the first is the main order.
-
-    Judged by the mean amplitude over the operating range at full load (without a curve: at `typical_torque`); orders
-    below a twentieth of the main one are left out.  A model without an engine has none.
-
-    >>> from torsional.engine import CrankLayout, Engine
-    >>> from torsional.model import Landmarks
-    >>> engine = Engine(bore=0.131, stroke=0.158, rod_length=0.2675, reciprocating_mass=4.2, compression_ratio=18.1,
-    ...                 layout=CrankLayout.inline((1, 5, 3, 6, 2, 4)))
-    >>> engine_orders(Model("six", {}, Landmarks(), engine=engine))[:2]
-    (3.0, 6.0)
-    """
-    if model.engine is None:
-        return ()
-    speeds = model.speeds(15)
-    torque = full_load(model, speeds)
-    size = np.abs(model.engine.harmonics(speeds, torque, CANDIDATES).sum(axis=-2)).mean(axis=0)
-    ranked = np.argsort(-size, kind="stable")[:count]
-    return tuple(float(CANDIDATES[i]) for i in ranked if size[i] >= NOTABLE * size[ranked[0]])
-
-
-def full_load(model: Model, speeds: Array) -> Array:
-    """Mean torque [Nm] at full load at each speed [rad/s]; without a curve `typical_torque` at each.
-
-    Raises ModelError where the curve does not reach a speed.
-    """
-    if model.engine is not None and model.engine.full_load is not None:
-        return np.asarray(model.engine.full_load_torque(speeds))
-    return np.full(np.shape(speeds), typical_torque(model))
+    return of_model(found, model)
 
 
 @dataclass(frozen=True, eq=False)

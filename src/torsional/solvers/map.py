@@ -10,16 +10,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
+from torsional.engine.orders import HALF_ORDERS
 from torsional.errors import ModelError, nearest
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
-from torsional.results import dataset
+from torsional.results import dataset, of_model
 from torsional.solvers.equilibrium import with_load_stiffness
 from torsional.solvers.harmonic import element_torques, response
 from torsional.solvers.operating import mean_state, torque_places
 from torsional.system import System, assemble
-
-HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
 
 
 @checked
@@ -39,17 +38,17 @@ def response_map(
     Each mean torque has its own equilibrium and tangent stiffnesses.  Dimensions (gear, torque, speed, order): complex
     0-peak ``angle`` [rad] at ``nodes`` (default: the model's landmarks) and ``torque_order`` [Nm] of ``elements``
     (default: absorber springs and clutch); ``travel`` (gear, torque, element) [rad], the mean twist;
-    ``within_full_load`` (torque, speed); ``status`` (gear, torque, speed, order), 0 where solved, NaN stands where not.
+    ``within_full_load`` (torque, speed), false at speeds that the curve does not reach as well; ``status`` (gear,
+    torque, speed, order), 0 where solved, NaN stands where not.
     ``progress(done, total)`` is called after each gear.  Raises ModelError for a model without an engine.
     """
-    if model.engine is None:
-        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    engine = model.running_engine
     speeds = np.atleast_1d(model.speeds(57) if speed is None else np.asarray(speed, dtype=float))
     torques = np.atleast_1d(model.torques(26) if torque is None else np.asarray(torque, dtype=float))
-    names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
+    names = model.chosen_gears(gears)
     n = np.atleast_1d(np.asarray(orders, dtype=float))
     throws = torque_places(model).throws  # a single one takes the torques of all cylinders
-    excitation = model.engine.excitation(throws, speeds[None, :], torques[:, None], n).torque
+    excitation = engine.excitation(throws, speeds[None, :], torques[:, None], n).torque
     loads = np.moveaxis(excitation, -2, -1).reshape(len(torques), -1, excitation.shape[-2])
     cells = []
     for done, gear in enumerate(names, 1):
@@ -58,13 +57,13 @@ def response_map(
     angle, twist, travel, status, ratio = (np.stack(parts) for parts in zip(*cells, strict=True))
     chosen = _places(model, nodes, elements)
     grid = ("gear", "torque", "speed", "order")
-    return dataset(
+    found = dataset(
         {
             "angle": ((*grid, "node"), angle, "angle"),
             "torque_order": ((*grid, "element"), twist, "torque"),
             "travel": (("gear", "torque", "element"), travel, "relative_angle"),
             "status": (grid, status, ""),
-            "within_full_load": (("torque", "speed"), _within(model, speeds, torques), ""),
+            "within_full_load": (("torque", "speed"), model.within_full_load(speeds, torques), ""),
         },
         {
             "gear": (np.array(names), ""),
@@ -75,24 +74,15 @@ def response_map(
             "element": (np.array(chosen[1]), ""),
         },
         analysis="response map",
-        model=model.name,
-        model_hash=model.hash,
         amplitude="complex 0-peak",
-    ).assign_coords(speed_ratio=(("gear", "node"), ratio))
+    )
+    return of_model(found.assign_coords(speed_ratio=(("gear", "node"), ratio)), model)
 
 
 def _places(model: Model, nodes: Sequence[str] | None, elements: Sequence[str] | None) -> tuple[list[str], list[str]]:
-    marks = model.landmarks
-    kept = nodes if nodes is not None else [marks.crankshaft, marks.input]
-    twisted = elements if elements is not None else [*marks.springs, marks.clutch]
+    kept = model.landmarks.observed_nodes if nodes is None else nodes
+    twisted = model.landmarks.observed_elements if elements is None else elements
     return [node for node in dict.fromkeys(kept) if node], [name for name in dict.fromkeys(twisted) if name]
-
-
-def _within(model: Model, speeds: Array, torques: Array) -> Array:
-    engine = model.engine
-    if engine is None or engine.full_load is None:
-        return np.ones((len(torques), len(speeds)), dtype=bool)
-    return np.asarray(engine.within_full_load(speeds[None, :], torques[:, None]))
 
 
 def _one_gear(

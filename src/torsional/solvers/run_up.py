@@ -9,14 +9,13 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
+from torsional.engine.orders import HALF_ORDERS
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.results import dataset
-from torsional.solvers.campbell import full_load
+from torsional.results import dataset, of_model
 from torsional.solvers.equilibrium import OperatingPoint, linearize
 from torsional.solvers.harmonic import element_torques, node_angles, response
-from torsional.solvers.map import HALF_ORDERS
 from torsional.solvers.operating import mean_state
 from torsional.system import System, assemble
 
@@ -36,20 +35,19 @@ def run_up_response(
     A grid of torques has these only roughly between its lines.  Raises ModelError for a model without an engine, and
     for speeds that the full-load curve does not reach.
     """
-    if model.engine is None:
-        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    _ = model.running_engine
     speeds = np.atleast_1d(model.speeds(141) if speed is None else np.asarray(speed, dtype=float))
-    carried = full_load(model, speeds) if torque is None else np.asarray(torque, dtype=float)
+    carried = model.full_load(speeds) if torque is None else np.asarray(torque, dtype=float)
     if carried.shape not in ((), (1,), speeds.shape):
-        found = f"{carried.size} torques and {speeds.size} speeds"
-        raise ModelError("one torque is wanted, or one for each speed", where="torque", found=found)
+        given = f"{carried.size} torques and {speeds.size} speeds"
+        raise ModelError("one torque is wanted, or one for each speed", where="torque", found=given)
     torques = np.broadcast_to(carried, speeds.shape)
     n = np.atleast_1d(np.asarray(orders, dtype=float))
-    system = assemble(model.powertrain(gear or None))
+    system = assemble(model.powertrain(gear))
     state = mean_state(model, system, torques)
     q, twisting = _coordinates(model, system, state, speeds, torques, n)
     over, at = ("speed", "order"), ("speed", "order", "element")
-    return dataset(
+    found = dataset(
         {
             "angle": ((*over, "node"), node_angles(system, q), "angle"),
             "torque": (at, twisting, "torque"),
@@ -64,10 +62,9 @@ def run_up_response(
             "element": (np.array(system.connections.names), ""),
         },
         analysis="run-up response",
-        model=model.name,
-        model_hash=model.hash,
         amplitude="complex 0-peak",
-    ).assign_coords(speed_ratio=("node", system.speed_ratio))
+    )
+    return of_model(found.assign_coords(speed_ratio=("node", system.speed_ratio)), model, model.gear_name(gear))
 
 
 @checked
@@ -83,9 +80,8 @@ def full_load_response(
     Nodes are the crankshaft and the node to be kept quiet, elements the absorber's springs and the clutch.
     """
     marks = model.landmarks
-    nodes = [node for node in dict.fromkeys((marks.crankshaft, marks.input)) if node]
-    elements = [name for name in dict.fromkeys((*marks.springs, marks.clutch)) if name]
-    names = [str(gear) for gear in gears] if gears is not None else list(model.gear_names)
+    nodes, elements = list(marks.observed_nodes), list(marks.observed_elements)
+    names = model.chosen_gears(gears)
     found = [run_up_response(model, speed, torque, gear, orders).sel(node=nodes, element=elements) for gear in names]
     every = [name for name in found[0].data_vars if name != "mean_torque"]
     settings = {"data_vars": every, "coords": ["speed_ratio"], "compat": "override", "combine_attrs": "override"}
@@ -96,8 +92,7 @@ def _coordinates(
     model: Model, system: System, state: OperatingPoint, speeds: Array, torques: Array, orders: Array
 ) -> tuple[ComplexArray, ComplexArray]:
     """Coordinates and element torques (speeds, orders, …); speeds of equal stiffnesses are solved together."""
-    engine, throws = model.engine, model.landmarks.throws
-    assert engine is not None
+    engine, throws = model.running_engine, model.landmarks.throws
     q = np.empty((len(speeds), len(orders), len(system.coordinates)), dtype=complex)
     twisting = np.empty((len(speeds), len(orders), len(system.connections.names)), dtype=complex)
     _, group = np.unique(np.hstack([state.stiffness, state.damping]), axis=0, return_inverse=True)

@@ -39,7 +39,7 @@ def sought_region(
 
     def mapped(speeds: Array, torques: Array) -> xr.Dataset:
         found = subharmonic_map(model, speeds, torques, gear, element=element, node=node, progress=progress)
-        return found.assign(within_full_load=(("torque", "speed"), _within_full_load(model, speeds, torques)))
+        return found.assign(within_full_load=(("torque", "speed"), model.within_full_load(speeds, torques)))
 
     first = mapped(speeds, torques)
     closer = closer_grid(first) if closely else None
@@ -73,17 +73,11 @@ def round_steps(low: float, high: float, count: int) -> Array:
     return values if len(values) > 1 else np.array([low, high])
 
 
-def _within_full_load(model: Model, speeds: Array, torques: Array) -> Array:
-    if model.engine is None or model.engine.full_load is None:
-        return np.ones((len(torques), len(speeds)), dtype=bool)
-    return np.asarray(torques[:, None] <= model.engine.full_load(speeds) * (1 + 1e-9))
-
-
 def full_load_curve(model: Model, low: float, high: float) -> xr.DataArray | None:
     """The full-load torque (speed) [Nm] between two speeds [rad/s], its corners included; None without a curve."""
-    if model.engine is None or model.engine.full_load is None:
+    curve = model.full_load_curve
+    if curve is None:
         return None
-    curve = model.engine.full_load
     corners = [speed for speed in curve.speeds if low < speed < high]
     speeds = np.unique([*np.linspace(low, high, 200), *corners])
     told = {"torque": (("speed",), curve(speeds), "torque")}

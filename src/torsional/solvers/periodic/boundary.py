@@ -9,18 +9,19 @@ import numpy as np
 import xarray as xr
 
 from torsional.arguments import checked
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import FOLD, Point
-from torsional.results import Variable, dataset
+from torsional.results import Variable, dataset, of_model
 from torsional.solvers.periodic.branches import MAIN, Explorer
 from torsional.solvers.periodic.curves import DOUBLING, bifurcation_curve
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
+from torsional.solvers.periodic.response import explored
 from torsional.system import assemble
 
 Family = Callable[[HarmonicProblem, float], HarmonicProblem]
@@ -53,7 +54,7 @@ def subharmonic_boundary(
     if along != TORQUE and torque is None:
         raise ModelError("the mean torque is missing", where=TORQUE, remedy="give the one at which the value is varied")
     loads = EngineLoads(model, speed, highest_order)
-    system, hold = assemble(model.powertrain(gear or None)), model.landmarks.load
+    system, hold = assemble(model.powertrain(gear)), model.landmarks.load
     first = explored(
         system, loads.at(span[1] if torque is None else torque), speed, hold=hold, highest_order=highest_order
     )
@@ -65,16 +66,14 @@ def subharmonic_boundary(
         explorer.explored()
         edges.append((float(value), explorer))
     quantity = "torque" if along == TORQUE else ""
-    return dataset(
+    found = dataset(
         curve_variables(region_curves(edges, family, speed), "value", quantity),
         {},
         analysis="subharmonic boundary",
         along=along,
         order=0.5 * first.base_order,
-        model=model.name,
-        model_hash=model.hash,
-        gear=str(gear or model.top_gear),
     )
+    return of_model(found, model, model.gear_name(gear))
 
 
 def _varied(model: Model, path: str, gear: str | int | None) -> Family:
@@ -84,7 +83,7 @@ def _varied(model: Model, path: str, gear: str | int | None) -> Family:
         key = like.base_order, value
         if key not in problems:
             split = like.setting.split
-            system = assemble(changed(model, {path: value}).powertrain(gear or None))
+            system = assemble(changed(model, {path: value}).powertrain(gear))
             setting = replace(like.setting, split=Split(system, split.speed, split))
             problems[key] = HarmonicProblem(setting, like.base_order)
         return problems[key]

@@ -10,15 +10,16 @@ from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
 from torsional.engine import Engine
+from torsional.engine.orders import HALF_ORDERS, HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.campbell import full_load
+from torsional.results import of_model
 from torsional.solvers.operating import torque_places
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import HIGHEST_ORDER, Variation, periodic_response
+from torsional.solvers.periodic.response import Variation, periodic_response
 from torsional.system import System, assemble
 
 Range = tuple[float, float]
@@ -56,7 +57,7 @@ def model_response(
     low, high = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
     load = engine_load(model, (low, high), torque, highest_order, base_order)
     data = periodic_response(
-        assemble(model.powertrain(gear or None)),
+        assemble(model.powertrain(gear)),
         load,
         (low, high),
         hold=model.landmarks.load,
@@ -67,7 +68,7 @@ def model_response(
         isolated=isolated,
         at=at,
     )
-    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+    return of_model(data, model, model.gear_name(gear))
 
 
 @checked
@@ -92,14 +93,14 @@ def varied_response(
     for the mean engine torque [Nm]; ``at``: values at which every branch that passes them gets a point.  Raises
     ModelError as `model_response` does, and for a path the model does not have.
     """
-    system, hold = assemble(model.powertrain(gear or None)), model.landmarks.load
+    system, hold = assemble(model.powertrain(gear)), model.landmarks.load
     if path == "torque":
         load = engine_torque_load(model, speed, span, highest_order, base_order)
         parameter: str | Variation = "mean_torque"
     else:
 
         def build(value: float) -> System:
-            return assemble(changed(model, {path: value}).powertrain(gear or None))
+            return assemble(changed(model, {path: value}).powertrain(gear))
 
         near = engine_load(model, (speed * (1 - NARROW), speed * (1 + NARROW)), torque, highest_order, base_order)
         load = Load.polynomial(near.nodes, near.orders, np.array([span[0]]), near.at(speed)[None])
@@ -119,25 +120,23 @@ def varied_response(
         isolated=isolated,
         at=at,
     )
-    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+    return of_model(data, model, model.gear_name(gear))
 
 
 def common_order(model: Model, speed: float, torque: float) -> float:
     """The largest order of which all torques that act on a stiff crankshaft are multiples."""
     engine = checked_engine(model)
-    orders = np.arange(0.5, 12.5, 0.5)
-    lumped = engine.harmonics(speed, torque, orders).sum(axis=-2)
+    lumped = engine.harmonics(speed, torque, HALF_ORDERS).sum(axis=-2)
     sizes = np.abs(lumped)
-    counts = orders[sizes > ACROSS * sizes.max()]
+    counts = HALF_ORDERS[sizes > ACROSS * sizes.max()]
     return float(np.gcd.reduce(np.round(2 * counts).astype(int))) / 2
 
 
 def checked_engine(model: Model) -> Engine:
     """The engine of a model that has one and says where its torque goes."""
-    if model.engine is None:
-        raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy="add an engine block")
+    engine = model.running_engine
     torque_places(model)
-    return model.engine
+    return engine
 
 
 def common_orders(
@@ -163,7 +162,7 @@ def engine_load(
     """The engine's load over speed at one mean torque [Nm], or along full load."""
     engine = checked_engine(model)
     speeds = np.linspace(*speed, SPEEDS) if torque is not None else _knots(model, speed)
-    torques = np.full(len(speeds), torque) if torque is not None else full_load(model, speeds)
+    torques = np.full(len(speeds), torque) if torque is not None else model.full_load(speeds)
     orders = common_orders(model, float(speeds.mean()), float(torques.mean()), highest_order, base_order)
     found = engine.excitation(model.landmarks.throws, speeds, torques, orders)
     return Load.over_speed(found)
@@ -186,7 +185,7 @@ def engine_torque_load(
 
 def _knots(model: Model, speed: tuple[float, float]) -> Array:
     """Speeds that include the corners of the full-load curve, close to each other on both sides of them."""
-    curve = model.engine.full_load if model.engine else None
+    curve = model.full_load_curve
     corners = np.asarray(curve.speeds) if curve is not None else np.zeros(0)
     near = np.concatenate([corners - 0.05, corners, corners + 0.05, np.linspace(*speed, 81)])
     return np.unique(np.clip(near, *speed))

@@ -11,17 +11,18 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.balance import corrected_at
-from torsional.results import dataset
+from torsional.results import dataset, of_model
 from torsional.solvers.periodic.boundary import curve_variables, region_curves
 from torsional.solvers.periodic.branches import MAIN, Branch, Explorer
 from torsional.solvers.periodic.isolated import seek_doubled
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
-from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
+from torsional.solvers.periodic.response import explored
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
 from torsional.solvers.periodic.verdict import verdict
@@ -58,7 +59,7 @@ def subharmonic_map(
     for name, values in (("speed", speeds), ("torque", torques)):
         if values.size < 2 or not (np.diff(values) > 0).all():
             raise ModelError("at least two rising values are wanted", where=name, found=str(values[:4]))
-    system, span = assemble(model.powertrain(gear or None)), (float(speeds[0]), float(speeds[-1]))
+    system, span = assemble(model.powertrain(gear)), (float(speeds[0]), float(speeds[-1]))
     loads = EngineLoads(model, span, highest_order)
     first = explored(
         system, loads.at(float(torques[-1])), span, hold=model.landmarks.load, highest_order=highest_order, depth=1
@@ -78,7 +79,7 @@ def subharmonic_map(
         progress(row + 1, len(torques))
     curves = region_curves(edges, loads.problem, span) if boundary else []
     data = table.presented(curves, place, quiet, 0.5 * first.base_order)
-    return data.assign_attrs(model=model.name, model_hash=model.hash, gear=str(gear or model.top_gear))
+    return of_model(data, model, model.gear_name(gear))
 
 
 class _Table:

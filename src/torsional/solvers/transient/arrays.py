@@ -14,9 +14,9 @@ from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.stepping_data import Connected, Driven, Rows, rows_of
 from torsional.stamps import NormalLoad
 from torsional.system import Connections, System
+from torsional.units import GRAVITY
 
 ROUNDING = 1e-12
-GRAVITY = 9.80665
 NEARLY, BOUNCING = 0.95, 2000.0
 """Share of a path at which a pendulum without stops is stopped, and by a contact of what rate [rad/s]."""
 _NONE = HingeRows(0.0, *(np.zeros(0),) * 4)

@@ -74,12 +74,9 @@ class CylinderTorques:
         reciprocating: str = "exact",
     ) -> CylinderTorques:
         """The engine of a ``model`` on its throws."""
-        if model.engine is None:
-            remedy = "add an engine block"
-            raise ModelError("the model has no engine, so nothing excites it", where="engine", remedy=remedy)
-        throws = torque_places(model).throws
+        engine, throws = model.running_engine, torque_places(model).throws
         given = tuple(level), tuple(level_times)
-        return cls(model.engine, throws, speed, torque, *given, feedback, reciprocating)
+        return cls(engine, throws, speed, torque, *given, feedback, reciprocating)
 
     def acting(self, system: System, speed: SpeedProfile) -> Acting:
         """Two sources a throw, motored and burnt; one crank a cylinder, or one more source a throw."""

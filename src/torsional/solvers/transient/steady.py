@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.arguments import checked
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import dataset
@@ -20,7 +21,6 @@ from torsional.solvers.transient.starts import starting
 from torsional.solvers.transient.stroboscope import Stroboscope
 from torsional.system import System
 
-HIGHEST_ORDER = 18.0
 WANDERING = 64
 """Periods over which the orders of a motion that never repeats itself are taken."""
 

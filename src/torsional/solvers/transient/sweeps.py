@@ -11,12 +11,13 @@ from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
 from torsional.engine import Excitation
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.machine import checked_engine, common_orders
 from torsional.solvers.transient.problem import Drives
-from torsional.solvers.transient.steady import HIGHEST_ORDER, steady_state
+from torsional.solvers.transient.steady import steady_state
 from torsional.system import System, assemble
 
 SCALARS = ("kind", "status", "periods", "exponent")

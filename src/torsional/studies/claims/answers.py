@@ -13,7 +13,6 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from torsional.engine import Engine
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
@@ -45,16 +44,9 @@ def mean_torque(model: Model) -> float:
     return LOAD * model.full_load_peak()
 
 
-def engine_of(model: Model) -> Engine:
-    """The model's engine; raises ModelError without one."""
-    if model.engine is None:
-        raise ModelError("the model has no engine", where="engine", remedy="add an engine block")
-    return model.engine
-
-
 def main_order(model: Model) -> float:
     """The firing order: half the number of cylinders."""
-    return engine_of(model).layout.cylinders / 2
+    return model.running_engine.layout.cylinders / 2
 
 
 def responded(
@@ -74,7 +66,7 @@ def responded(
     nodes: Sequence[str] = model.landmarks.throws
     if len(nodes) == 1:  # a lumped engine
         nodes = nodes[0]
-    return harmonic_response(system, engine_of(model).excitation(nodes, speed, means, asked))
+    return harmonic_response(system, model.running_engine.excitation(nodes, speed, means, asked))
 
 
 def at_input(model: Model, speed: Array, torque: ArrayLike | None = None, gear: str | None = None) -> Array:

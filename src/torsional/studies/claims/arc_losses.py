@@ -14,7 +14,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.hysteresis import absorber_ends, hysteresis, model_hysteresis
 from torsional.solvers.transient import transient
-from torsional.studies.claims.answers import engine_of, floats, main_order
+from torsional.studies.claims.answers import floats, main_order
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.hysteresis import long_arcs
 from torsional.studies.claims.trucks import Trucks
@@ -69,7 +69,7 @@ class Driven(NamedTuple):
 def driven(model: Model, rpm: float, share: float) -> Driven:
     """The detailed truck in time, steady in top gear under a share of its largest torque."""
     front, back = absorber_ends(model)
-    engine, marks, speed = engine_of(model), model.landmarks, rpm * RPM
+    engine, marks, speed = model.running_engine, model.landmarks, rpm * RPM
     orders = np.arange(0.0, 12.5, 0.5)
     drive = engine.excitation(marks.throws, speed, share * model.full_load_peak(), orders)
     line = assemble(model.detailed().powertrain())

@@ -11,7 +11,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Explorer
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.studies.claims.answers import engine_of, floats, main_order
+from torsional.studies.claims.answers import floats, main_order
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.motions import (
     distinct,
@@ -56,7 +56,7 @@ class Place:
 
 def places(model: Model, speed: float) -> list[Place]:
     """The grid points over mean torque, within full load, at which more than one motion short of the stop is stable."""
-    grid = np.arange(LOWEST, float(engine_of(model).full_load_torque(speed)), GRID)
+    grid = np.arange(LOWEST, float(model.running_engine.full_load_torque(speed)), GRID)
     explorer = over_torque(model, speed, (float(grid[0]), float(grid[-1])))
     if not any(branch.events for branch in explorer.branches[1:]):
         return []

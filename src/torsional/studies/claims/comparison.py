@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 
 from torsional.components import Component
+from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
 from torsional.results import dataset
-from torsional.solvers.map import HALF_ORDERS, response_map
+from torsional.solvers.map import response_map
 from torsional.stamps import GROUND
 from torsional.studies.claims.answers import (
     INPUT,

@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from torsional.engine.orders import BoolArray
+from torsional.engine.orders import HALF_ORDERS, BoolArray
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, irregularity, order_share, swing
-from torsional.solvers.map import HALF_ORDERS
 from torsional.studies.claims.answers import (
     curves,
-    engine_of,
     floats,
     input_shaft,
     main_order,
@@ -32,20 +30,15 @@ NEAR = 0.1
 STEP = 25 * RPM
 
 
-def full_load(model: Model, speed: Array) -> Array:
-    """Full-load torque over speed [Nm]."""
-    return engine_of(model).full_load_torque(speed)
-
-
 def crossing(model: Model, speed: Array) -> BoolArray:
     """Where gas and mass torque of the firing order all but cancel in the engine itself, at full load; boolean."""
-    own = engine_of(model).harmonics(speed, full_load(model, speed), [main_order(model)]).sum(axis=-2)[:, 0]
+    own = model.running_engine.harmonics(speed, model.full_load(speed), [main_order(model)]).sum(axis=-2)[:, 0]
     return np.asarray(np.abs(own) < CROSSING * np.median(np.abs(own)))
 
 
 def orders_at(model: Model, speed: Array) -> xr.DataArray:
     """Torque orders of the gearbox input shaft at full load [Nm], complex 0-peak, (speed, order)."""
-    found: xr.DataArray = responded(model, speed, full_load(model, speed), orders=HALF_ORDERS).torque
+    found: xr.DataArray = responded(model, speed, model.full_load(speed), orders=HALF_ORDERS).torque
     return found.sel(element=input_shaft(model))
 
 
@@ -92,7 +85,7 @@ def _other_orders(model: Model, speed: Array, power: Array) -> str:
 
 def differences(model: Model, speed: Array) -> tuple[Array, Array]:
     """A lumped engine's input acceleration over that of the flexible crankshaft, less one: firing order, swing."""
-    load = full_load(model, speed)
+    load = model.full_load(speed)
     pair = [_accelerations(m, speed, load) for m in (model, lumped(model))]
     order = [np.abs(a.sel(order=main_order(model)).values) for a in pair]
     cycle = [swing(a).values for a in pair]
@@ -181,7 +174,7 @@ def a15(trucks: Trucks) -> Finding:
 def _irregularity(model: Model) -> Array:
     """Irregularity of the throws' mean motion and of the crankshaft landmark at idle under full load."""
     idle = np.array([model.operation.idle])
-    angle = responded(model, idle, full_load(model, idle), orders=HALF_ORDERS).angle
+    angle = responded(model, idle, model.full_load(idle), orders=HALF_ORDERS).angle
     body = angle.sel(node=list(model.landmarks.throws)).mean("node")
     both = [body, angle.sel(node=model.landmarks.crankshaft)]
     return np.array([float(irregularity(motion).values[0]) for motion in both])

@@ -19,7 +19,7 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.stability import stage_bases
 from torsional.solvers.transient import TorqueHistory
-from torsional.studies.claims.answers import engine_of, floats, main_order
+from torsional.studies.claims.answers import floats, main_order
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.settling import Stepped, reach_of, swing_of
 from torsional.studies.claims.trucks import Trucks, hinged, reached, replaced, stiffness, within
@@ -121,7 +121,7 @@ class Idle:
 def _excited(model: Model) -> Excitation:
     """The engine's torques at idle without mean torque, in multiples of its firing order."""
     orders = main_order(model) * np.arange(1, HARMONICS + 1)
-    return engine_of(model).excitation(model.landmarks.throws, model.operation.idle, 0.0, orders)
+    return model.running_engine.excitation(model.landmarks.throws, model.operation.idle, 0.0, orders)
 
 
 @claim(

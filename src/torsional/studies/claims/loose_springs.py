@@ -33,7 +33,7 @@ from torsional.numerics.stepping_plan import (
 from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State, starting
-from torsional.studies.claims.answers import engine_of, main_order
+from torsional.studies.claims.answers import main_order
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -89,7 +89,7 @@ class LooseMotion:
     def excitation(self) -> Excitation:
         """Torques of the throws."""
         orders = [0.0, main_order(self.model)]
-        return engine_of(self.model).excitation(self.model.landmarks.throws, self.speed, self.torque, orders)
+        return self.model.running_engine.excitation(self.model.landmarks.throws, self.speed, self.torque, orders)
 
     @cached_property
     def problem(self) -> Problem:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.piecewise_motion import PiecewiseMotion
@@ -11,7 +12,7 @@ from torsional.solvers.periodic.branches import Branch, Explorer
 from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.machine import engine_load, engine_torque_load
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import HIGHEST_ORDER, explored
+from torsional.solvers.periodic.response import explored
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
 from torsional.studies.claims.answers import input_shaft
@@ -31,7 +32,7 @@ def over_torque(
     """Branches over a range of mean torque [Nm] at one speed [rad/s], followed."""
     load = engine_torque_load(model, speed, torque, highest_order)
     found = explored(
-        assemble(model.powertrain(gear or None)),
+        assemble(model.powertrain(gear)),
         load,
         torque,
         parameter="mean_torque",
@@ -50,7 +51,7 @@ def over_speed(
     """Branches over a range of speed [rad/s] at one mean torque [Nm], followed."""
     load = engine_load(model, speed, torque, highest_order)
     found = explored(
-        assemble(model.powertrain(gear or None)),
+        assemble(model.powertrain(gear)),
         load,
         speed,
         hold=model.landmarks.load,

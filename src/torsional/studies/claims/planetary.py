@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from torsional.components import Coupling, PlanetSpin
+from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
-from torsional.solvers.map import HALF_ORDERS
 from torsional.studies.claims.answers import INPUT, at_input, curves, floats, main_order, responded, speeds
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.power_split import Parts, inertia_at

@@ -19,7 +19,6 @@ from torsional.studies.claims.answers import (
     INPUT,
     at_input,
     curves,
-    engine_of,
     falling,
     floats,
     lowest,
@@ -113,7 +112,7 @@ def paths(model: Model, speed: float) -> tuple[complex, complex, complex]:
     first, second, _ = (complex(found.angle.sel(node=node)) for node in parts.nodes)
     third = (1 - parts.g) * first + parts.g * second
     inertial = -((n * speed) ** 2) * (parts.J2 * second + parts.g * parts.J3 * third)
-    engine = engine_of(model).harmonics(speed, mean_torque(model), [n]).sum()
+    engine = model.running_engine.harmonics(speed, mean_torque(model), [n]).sum()
     return complex(found.torque.sel(element=parts.springs)) / parts.r, -inertial / parts.r, complex(engine)
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from torsional.engine import Excitation
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.piecewise_motion import PiecewiseMotion
-from torsional.solvers.periodic.response import HIGHEST_ORDER
 from torsional.solvers.transient import OrderTorques, State, TorqueHistory, engine_drive, steady_state, transient
 from torsional.system import System, assemble
 

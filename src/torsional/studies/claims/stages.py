@@ -14,7 +14,7 @@ from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
 from torsional.results import dataset
 from torsional.solvers.periodic import model_response
-from torsional.studies.claims.answers import engine_of, floats, span
+from torsional.studies.claims.answers import floats, span
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.stiffness_step import stages, transition_torque
 from torsional.studies.claims.trucks import Trucks, hinged, replaced
@@ -47,7 +47,7 @@ def row(model: Model, torque: float) -> tuple[Array, Array]:
 
     Not a number beyond full load, and where no stable motion was found.
     """
-    inside = SPEEDS[engine_of(model).full_load_torque(SPEEDS) >= torque]
+    inside = SPEEDS[model.running_engine.full_load_torque(SPEEDS) >= torque]
     table = np.full((2, SPEEDS.size), np.nan)
     try:
         found = model_response(model, (inside[0], inside[-1]), torque, depth=1, at=inside)

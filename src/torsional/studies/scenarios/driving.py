@@ -141,7 +141,7 @@ def within_stop(model: Model, gear: str, **torques: float) -> None:
     from torsional.solvers.operating import operated
 
     for key, torque in torques.items():
-        _, point = operated(model, torque, gear or None)
+        _, point = operated(model, torque, gear)
         for spring in model.landmarks.springs:
             if point.stage(spring) == "stop":
                 law = point.laws[point.names.index(spring)]

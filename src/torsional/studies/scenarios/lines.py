@@ -59,7 +59,7 @@ def gear_of(model: Model, name: str, place: int = -1, where: str = "gear") -> st
 
 def line_of(model: Model, gear: str = "") -> Powertrain:
     """The line in a gear as it moves in time: with the inner parts of an absorber that has them."""
-    return model.detailed().powertrain(gear or None)
+    return model.detailed().powertrain(gear)
 
 
 def inner_parts(model: Model) -> frozenset[str]:

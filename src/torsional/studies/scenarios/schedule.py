@@ -87,10 +87,7 @@ def heat_for(model: Model, speed: float, torques: Sequence[float]) -> tuple[floa
 
     Heat grows the torque in proportion from that of the motored engine on.  Raises ModelError for a torque below that.
     """
-    if model.engine is None:
-        remedy = "add an engine block"
-        raise ModelError("the model has no engine, so nothing drives it", where="engine", remedy=remedy)
-    least, most = float(model.engine.motored_torque(speed)), max(torques)
+    least, most = float(model.running_engine.motored_torque(speed)), max(torques)
     for torque in torques:
         if torque < least:
             allowed = f"{show(least, 'torque')} and more, which is the motored engine"

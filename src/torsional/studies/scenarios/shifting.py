@@ -150,7 +150,7 @@ def drives_of(block: GearShift, model: Model, speed: float, before: float, after
     """Engine, road, what keeps the line from accelerating before the time zero, and the governor of neutral."""
     crank, load = lines.crank_of(model), lines.load_of(model)
     least = max(before, after, 1.0)
-    full = model.engine is not None and model.engine.full_load is not None
+    full = model.full_load_curve is not None
     most, shares = heat_for(
         model, speed, [max(least, CARRIED * model.full_load_peak() if full else 0.0), before, 0.0, after]
     )

@@ -5,8 +5,8 @@ from __future__ import annotations
 from torsional.components import Inertia, Vehicle
 from torsional.errors import ModelError
 from torsional.model import Model
+from torsional.units import GRAVITY
 
-GRAVITY = 9.81
 DISC, STICKING = 1.0 / 3.0, 300.0
 """Share of the clutch disc's inertia that linings have; torque that they hold over the twist [rad], over capacity."""
 
@@ -17,10 +17,7 @@ def torque(model: Model, given: float | None, share: float, where: str) -> float
         return given
     if share == 0.0:
         return 0.0
-    if model.engine is None:
-        problem, remedy = "the model has no engine, so nothing drives it", "add an engine block"
-        raise ModelError(problem, where="engine", remedy=remedy)
-    if model.engine.full_load is None:
+    if model.running_engine.full_load is None:
         problem = "the model has no full-load curve to take a usual torque from"
         raise ModelError(problem, where=where, remedy="give the key, or engine.full_load in the model file")
     return share * model.full_load_peak()
