@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+from tests.shipped import ROOT
+
 EXPECTED: dict[str, dict[Any, float]] = {
     # 768.6/20 Hz: third-order speed 769 rpm of the clutch mode, by an independent prototype
     "01_first_look": {"clutch_mode": 38.43},

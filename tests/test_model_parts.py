@@ -1,17 +1,15 @@
 """Parts of a model changed in Python: they stay, and nothing speaks of a file that no longer describes them."""
 
-from pathlib import Path
 
 import pytest
 
 import torsional as tv
-
-ROOT = Path(__file__).parents[1]
+from tests.shipped import shipped
 
 
 @pytest.fixture(scope="module")
 def truck() -> tv.Model:
-    return tv.load_model(ROOT / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 def test_joined_parts_are_in_every_gear_and_in_the_hash(truck: tv.Model) -> None:

@@ -1,18 +1,16 @@
 """What a notebook shows: short tables, with units, that nothing typed by a user can break out of."""
 
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import torsional as tv
-
-ROOT = Path(__file__).parents[1]
+from tests.shipped import shipped
 
 
 @pytest.fixture(scope="module")
 def truck() -> tv.Model:
-    return tv.load_model(ROOT / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 def test_objects_tell_what_they_are_in_a_line(truck: tv.Model) -> None:

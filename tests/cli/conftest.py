@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from tests.shipped import ROOT
 
 from torsional.cli import main
-
-ROOT = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True)

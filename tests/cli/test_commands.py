@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
+from tests.shipped import ROOT
 
 from torsional.files import load_model
 from torsional.files.starter import KINDS
@@ -17,7 +18,6 @@ from torsional.quantities import SAMPLES
 from torsional.results import load_results
 from torsional.system import assemble
 
-ROOT = Path(__file__).parents[2]
 Run = Callable[..., Any]
 
 ANALYSES = {

@@ -12,16 +12,16 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from tests.shipped import EXAMPLES
 
 from torsional.cli.hysteresis import listed
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.results import load_results
 from torsional.solvers.hysteresis import model_hysteresis
+from torsional.units import RPM
 
 Run = Callable[..., Any]
-RPM = np.pi / 30
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SHOES = str(EXAMPLES / "truck_dmf_straight_spring.yaml")
 ASKED = ["--speed", "0,2000rpm", "--sweep", "5,12deg"]
 

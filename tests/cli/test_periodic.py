@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import EXAMPLES
 from tests.synthetic_branches import FOLD, branches, region
 
 import torsional.cli.periodic
@@ -32,10 +33,9 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.results import load_results
 from torsional.studies.branches import solutions_at
+from torsional.units import RPM
 
 Run = Callable[..., Any]
-RPM = np.pi / 30
-EXAMPLES = Path(__file__).parents[2] / "examples"
 STAGED = str(EXAMPLES / "truck_dmf_two_stage.yaml")
 LINEAR = str(EXAMPLES / "truck_smf.yaml")
 AT_1200 = ["--speed", "800:1000rpm", "--torque", "1200Nm"]

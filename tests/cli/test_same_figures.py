@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,9 +19,9 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import damped_modes, modal
 from torsional.solvers.operating import operated
+from torsional.units import RPM
 
 Run = Callable[..., Any]
-RPM = math.pi / 30
 
 
 def result(torsional: Run, *arguments: object) -> dict[str, Any]:

@@ -17,9 +17,9 @@ import pytest
 
 from torsional import load_results
 from torsional.files.scenario_schema import KINDS
+from torsional.units import RPM
 
 Run = Callable[..., Any]
-RPM = np.pi / 30
 
 BAD = [
     (["engine_strat"], ["'engine_strat'", "did you mean 'engine_start'?"]),

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from torsional import load_model, load_results, run_up_response, swing
+from torsional.units import RPM
 
 Run = Callable[..., Any]
-RPM = np.pi / 30
 
 BAD = [
     (["--gear", "13"], ["--gear", "'13'"]),

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from torsional.engine import CrankLayout, Engine, FullLoad
-
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="session")

@@ -8,8 +8,8 @@ import pytest
 from torsional.engine import ChenFlynn, CrankLayout, Engine, Excitation, FullLoad
 from torsional.engine.orders import crank_angle_grid
 from torsional.errors import ModelError
+from torsional.units import RPM
 
-RPM = np.pi / 30
 ORDERS = np.arange(0.0, 12.5, 0.5)
 CROSS_PLANE = (1, 5, 4, 8, 6, 3, 7, 2)
 

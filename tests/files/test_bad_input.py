@@ -11,11 +11,11 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.shipped import EXAMPLES
 
 from torsional.errors import ModelError
 from torsional.files import load_model
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 TRUCK = (EXAMPLES / "truck_dmf.yaml").read_text(encoding="utf-8")
 CURVE = (EXAMPLES / "truck13_full_load.csv").read_text(encoding="utf-8")
 LINE = """\

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from tests.shipped import shipped
 
 from torsional.errors import ModelError
-from torsional.files import changed, document_paths, load_model
+from torsional.files import changed, document_paths
 from torsional.files.edit import parsed_edit
 from torsional.model import Landmarks, Model
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-TRUCK = load_model(EXAMPLES / "truck_dmf_two_stage.yaml")
+TRUCK = shipped("truck_dmf_two_stage")
 
 
 def test_a_stage_by_its_path() -> None:

@@ -8,20 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from tests.shipped import MODEL_FILES
 
 from torsional.files import load_model, starter, warnings_of
 from torsional.solvers.operating import operated
 from torsional.system import assemble
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
-TRUCKS = [path for path in EXAMPLES if path.stem.startswith("truck")]
+TRUCKS = [path for path in MODEL_FILES if path.stem.startswith("truck")]
 
 
 def example(name: str) -> Path:
-    return EXAMPLES[0].with_name(f"{name}.yaml")
+    return MODEL_FILES[0].with_name(f"{name}.yaml")
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_loads_without_a_warning(path: Path) -> None:
     model = load_model(path)
     assert warnings_of(model) == []
@@ -29,7 +29,7 @@ def test_loads_without_a_warning(path: Path) -> None:
         assert np.linalg.eigvalsh(assemble(model.powertrain(gear)).M).min() > 0
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_every_file_is_explained(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert text.startswith("# ")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.shipped import MODEL_FILES
 
 from torsional.components import Coupling, Inertia
 from torsional.errors import ModelError
@@ -15,10 +16,8 @@ from torsional.laws import Law
 from torsional.model import Landmarks, Model
 from torsional.system import assemble
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
 
-
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_expanded_model_is_the_same_to_the_last_bit(path: Path) -> None:
     model = load_model(path)
     again = model_from_document(json.loads(json.dumps(expanded(model))))
@@ -34,7 +33,7 @@ def test_expanded_model_is_the_same_to_the_last_bit(path: Path) -> None:
             assert np.array_equal(getattr(one, matrix), getattr(two, matrix))
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_expanded_model_is_read_from_a_file_and_expands_to_itself(path: Path, tmp_path: Path) -> None:
     document = expanded(load_model(path))
     file = tmp_path / "expanded.json"
@@ -56,6 +55,6 @@ def test_what_the_file_format_does_not_know_is_refused() -> None:
 
 
 def test_engine_without_a_file_is_refused() -> None:
-    model = load_model(EXAMPLES[-1])
+    model = load_model(MODEL_FILES[-1])
     with pytest.raises(ModelError, match="the engine did not come from a model file"):
         expanded(model.replaced(document={}))

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import copy
 import json
-from pathlib import Path
 from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from tests.shipped import EXAMPLES, shipped
 
 from torsional.components import Coupling
 from torsional.errors import ModelError
-from torsional.files import changed, expanded, load_model, model_from_document
+from torsional.files import changed, expanded, model_from_document
 from torsional.files.reader import read_tree
 from torsional.files.schema.document import json_schema
 from torsional.laws import Jenkins
@@ -25,11 +25,10 @@ from torsional.solvers.modal import modal
 from torsional.solvers.operating import mean_state, operated
 from torsional.solvers.run_up import run_up_response
 from torsional.system import assemble
+from torsional.units import RPM
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-TRUCK = load_model(EXAMPLES / "truck_dmf.yaml")
+TRUCK = shipped("truck_dmf")
 STUCK = 60.0 / np.radians(0.1)
-RPM = np.pi / 30
 RUBBING = changed(TRUCK, "clutch.friction_torque=60 Nm", "absorber.friction_torque=40 Nm")
 
 
@@ -58,7 +57,7 @@ def test_washers_stand_beside_the_springs() -> None:
     ],
 )
 def test_every_absorber_with_one_row_of_springs_may_rub(name: str, washer: str) -> None:
-    model = only(load_model(EXAMPLES / f"{name}.yaml"), "absorber", friction_torque="30 Nm")
+    model = only(shipped(name), "absorber", friction_torque="30 Nm")
     spring, beside = model.components[washer.removesuffix("_friction")], model.components[washer]
     assert isinstance(spring, Coupling) and isinstance(beside, Coupling)
     assert (beside.a, beside.b) == (spring.a, spring.b)
@@ -70,13 +69,13 @@ def test_refused() -> None:
     with pytest.raises(ModelError, match=r"absorber.friction_torque.*must not be negative"):
         only(TRUCK, "absorber", friction_torque=-1.0)
     with pytest.raises(ModelError, match=r"absorber.friction_torque.*two rows of springs.*friction_washer"):
-        only(load_model(EXAMPLES / "truck_dmf_tva.yaml"), "absorber", friction_torque=10.0)
+        only(shipped("truck_dmf_tva"), "absorber", friction_torque=10.0)
     with pytest.raises(ModelError, match=r"absorber.friction_torque.*unknown"):
-        only(load_model(EXAMPLES / "truck_smf.yaml"), "absorber", friction_torque=10.0)
+        only(shipped("truck_smf"), "absorber", friction_torque=10.0)
 
 
 def test_washer_between_any_two_nodes() -> None:
-    row = load_model(EXAMPLES / "truck_dmf_tva.yaml")
+    row = shipped("truck_dmf_tva")
     document = copy.deepcopy(dict(row.document))
     document["components"] = {
         "ring": {"type": "friction_washer", "a": "flange", "b": "primary", "friction_torque": "25 Nm", "damping": 2.0}

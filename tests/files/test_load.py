@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.shipped import EXAMPLES
 
 from torsional.components import Coupling, Damper, GearPair, Inertia, PlanetSpin, Shaft
 from torsional.engine import CombustionCycle, LoadTable, PressureTrace
@@ -18,9 +19,8 @@ from torsional.files.faults import SchemaError
 from torsional.files.reader import read_tree
 from torsional.laws import Hinges
 from torsional.model import Model
+from torsional.units import RPM
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-RPM = np.pi / 30
 TRUCK = read_tree(EXAMPLES / "truck_dmf.yaml").data
 
 

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 from tests.files.mutation import mutant
+from tests.shipped import MODEL_FILES
 
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.model import Model
 from torsional.system import assemble
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
-CURVE = EXAMPLES[0].with_name("truck13_full_load.csv")
+CURVE = MODEL_FILES[0].with_name("truck13_full_load.csv")
 SHORT, LONG = 300, 100_000
 
 
@@ -52,26 +52,26 @@ def check(folder: Path, path: Path, seed: int, number: int) -> bool:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     shutil.copy(CURVE, tmp_path)
-    load_model(EXAMPLES[0])  # what the first call compiles or imports is not the mutants' time
+    load_model(MODEL_FILES[0])  # what the first call compiles or imports is not the mutants' time
     return tmp_path
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_mutants(folder: Path, path: Path) -> None:
     loaded = sum(check(folder, path, 0, number) for number in range(SHORT))
     assert 0.05 * SHORT < loaded < 0.6 * SHORT
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_a_hundred_thousand_mutants(folder: Path, path: Path) -> None:
-    for number in range(LONG // len(EXAMPLES)):
+    for number in range(LONG // len(MODEL_FILES)):
         check(folder, path, 1, number)
 
 
 @pytest.mark.parametrize("number", range(200))
 def test_mutants_of_the_curve(folder: Path, number: int) -> None:
-    truck = EXAMPLES[0].with_name("truck_smf.yaml").read_bytes()
+    truck = MODEL_FILES[0].with_name("truck_smf.yaml").read_bytes()
     (folder / CURVE.name).write_bytes(mutant(CURVE.read_bytes(), 2, number)[1])
     found = outcome(folder, truck)
     assert isinstance(found, Model) or "engine.full_load" in str(found)

@@ -7,6 +7,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+from tests.shipped import MODEL_FILES
 
 from torsional.errors import ModelError
 from torsional.files import json_schema
@@ -14,7 +15,6 @@ from torsional.files.reader import read_tree
 from torsional.files.schema.fields import Quantity, plain_name
 from torsional.units import QUANTITIES
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
 SCHEMA = json_schema()
 
 
@@ -29,7 +29,7 @@ def test_is_a_schema_of_draft_2020_12() -> None:
     assert SCHEMA["$schema"].endswith("2020-12/schema")
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MODEL_FILES, ids=lambda path: path.stem)
 def test_shipped_models_are_valid_under_the_schema(path: Path) -> None:
     validator = jsonschema.Draft202012Validator(SCHEMA)
     data = read_tree(path).data

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from tests.shipped import EXAMPLES, shipped
 
 from torsional.absorbers import ArcSprings, CoilSpring, GuideFriction, StraightSprings, condensed
 from torsional.cli import main
 from torsional.errors import ModelError
-from torsional.files import changed, expanded, load_model, model_from_document, warnings_of
+from torsional.files import changed, expanded, model_from_document, warnings_of
 from torsional.files.schema.document import json_schema
 from torsional.model import Model
 from torsional.quantities import named_modes
@@ -22,8 +22,7 @@ from torsional.solvers.modal import modal
 from torsional.solvers.operating import operated
 from torsional.system import assemble
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-STRAIGHT, ARC = (load_model(EXAMPLES / f"truck_dmf_{kind}_spring.yaml") for kind in ("straight", "arc"))
+STRAIGHT, ARC = (shipped(f"truck_dmf_{kind}_spring") for kind in ("straight", "arc"))
 BOTH = pytest.mark.parametrize("model", [STRAIGHT, ARC], ids=["straight", "arc"])
 DEGREE = np.pi / 180
 MICRON = 1e-6
@@ -103,7 +102,7 @@ def test_detail_is_a_machine_of_the_same_inertia(model: Model) -> None:
         plain, fine = assemble(model.powertrain(gear)), assemble(whole.powertrain(gear))
         assert fine.M.sum() == pytest.approx(plain.M.sum(), rel=1e-12)
         assert len(fine.coordinates) == len(plain.coordinates) + len([n for n in fine.nodes if n not in plain.nodes])
-    assert load_model(EXAMPLES / "truck_dmf.yaml").detailed().components["dmf"] is not None
+    assert shipped("truck_dmf").detailed().components["dmf"] is not None
 
 
 @pytest.mark.parametrize(
@@ -111,7 +110,7 @@ def test_detail_is_a_machine_of_the_same_inertia(model: Model) -> None:
 )
 def test_linear_analyses_see_two_flywheels(model: Model, name: str, torque: float) -> None:
     """The truck whose flywheel is given by its law has, within the law's half per cent, the same modes and answer."""
-    plain = load_model(EXAMPLES / f"{name}.yaml")
+    plain = shipped(name)
     found, expected = (modal(operated(m, torque)[0], 100.0) for m in (model, plain))
     assert found.frequency.size == expected.frequency.size
     np.testing.assert_allclose(found.frequency, expected.frequency, rtol=2e-3, atol=1e-6)

@@ -11,9 +11,9 @@ from torsional.errors import ModelError
 from torsional.numerics.floquet import ordered
 from torsional.numerics.piecewise_basis import StageBases
 from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.units import RPM
 
 TWO_PI = 2.0 * np.pi
-RPM = np.pi / 30.0
 
 
 def oscillator(law: list[float], damping: float = 0.0, stiffness: float = 0.0, mass: float = 1.0) -> StageBases:

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import shipped
 
-from torsional.files import load_model
 from torsional.model import Model
 from torsional.quantities import acceleration, named_modes
 from torsional.solvers.campbell import campbell
 from torsional.solvers.run_up import full_load_response
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
 
 @pytest.fixture(scope="session")
 def truck() -> Model:
-    return load_model(EXAMPLES / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 @pytest.fixture(scope="session")

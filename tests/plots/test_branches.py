@@ -16,8 +16,8 @@ from torsional import plots
 from torsional.laws import Hinges
 from torsional.plots.branches import branch_colour, parameter_axis
 from torsional.studies.branches import solutions_at
+from torsional.units import RPM
 
-RPM = np.pi / 30
 LAW = Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6)
 
 

@@ -14,8 +14,7 @@ from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis
 from torsional.stamps import NormalLoad
 from torsional.system import assemble
-
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")

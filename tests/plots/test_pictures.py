@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 import matplotlib as mpl
@@ -10,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from tests.shipped import shipped
 
 from torsional import plots
 from torsional.errors import ModelError
-from torsional.files import load_model
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.plots.maps import colour_limits
@@ -21,9 +20,7 @@ from torsional.quantities import bound, swing
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import operated
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 def texts(figure: Figure) -> str:
@@ -205,7 +202,7 @@ def test_engine_orders() -> None:
 
 @pytest.mark.parametrize("name", ["truck_dmf", "truck_psva", "truck_dmf_tva", "truck_dmf_pendulum", "marine_line"])
 def test_chain_shows_every_node_and_spring(name: str) -> None:
-    model = load_model(EXAMPLES / f"{name}.yaml")
+    model = shipped(name)
     powertrain = model.powertrain()
     figure = plots.plot_chain(powertrain, absorber=model.landmarks.springs, clutch=model.landmarks.clutch)
     assert len(figure.axes[0].patches) == len(powertrain.nodes)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import shipped
 
-from torsional import load_model, load_scenario, plots, run_scenario
+from torsional import load_scenario, plots, run_scenario
 from torsional.plots.transient import envelope
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +25,7 @@ def run() -> xr.Dataset:
     overriding = load_scenario(
         "gear_shift", [*shift, "from_gear=9", "model.absorber.stop_torque=1500 Nm", "torque=500"]
     )
-    return run_scenario(load_model(ROOT / "examples" / "truck_dmf.yaml"), overriding)
+    return run_scenario(shipped("truck_dmf"), overriding)
 
 
 def test_a_scenario_shows_what_was_done_and_what_it_did(run: xr.Dataset) -> None:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from tests.shipped import shipped
 
-from torsional.files import load_model
 from torsional.model import Model
 from torsional.report.analysis import Comparison, analysed
 from torsional.report.page import rendered
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
 
 def example(name: str) -> Model:
-    return load_model(EXAMPLES / f"{name}.yaml")
+    return shipped(name)
 
 
 @pytest.fixture(scope="session")

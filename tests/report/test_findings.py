@@ -13,8 +13,7 @@ from torsional.report.analysis import Comparison, analysed, continued, usable_sp
 from torsional.report.finding import Finding
 from torsional.report.findings import findings
 from torsional.report.labels import rounded, told
-
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from tests.report.conftest import example
 
@@ -14,8 +13,7 @@ from torsional.report.blocks import Heading, Picture, Table
 from torsional.report.findings import findings
 from torsional.report.motion_pictures import motion_blocks
 from torsional.report.motions import Motions, has_stages, motion_findings, motions_of, sought
-
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")

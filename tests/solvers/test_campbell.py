@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.shipped import shipped
 
 from torsional.absorbers import CentrifugalPendulum
 from torsional.components import Inertia, Shaft
 from torsional.engine import CrankLayout
 from torsional.errors import ModelError
-from torsional.files import load_model
 from torsional.model import Landmarks, Model
 from torsional.solvers.campbell import campbell
 from torsional.solvers.map import response_map
 from torsional.solvers.run_up import full_load_response
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 def example(name: str) -> Model:
-    return load_model(EXAMPLES / f"{name}.yaml")
+    return shipped(name)
 
 
 def test_published_crankshaft() -> None:

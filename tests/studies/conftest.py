@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 
 import pytest
+from tests.shipped import shipped
 
-from torsional.files import load_model
 from torsional.studies.claims import CLAIMS, Outcome
 from torsional.studies.claims.trucks import Trucks
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="session")
 def trucks() -> Trucks:
     files = ["smf", "dmf", "psva", "dmf_tva", "planetary_dmf", "dmf_pendulum", "dmf_two_stage"]
     files += ["dmf_arc_spring"]
-    return Trucks(*(load_model(EXAMPLES / f"truck_{name}.yaml") for name in files))
+    return Trucks(*(shipped(f"truck_{name}") for name in files))
 
 
 class Judged(Mapping[str, Outcome]):

@@ -9,8 +9,7 @@ from tests.synthetic_branches import region
 
 from torsional.studies.region import boundary_curves, crossings, smooth, stretches
 from torsional.studies.subharmonic import closer_grid, round_steps, within
-
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture

@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import MODEL_FILES
 
 import torsional as tv
 from torsional.files.load import model_from_document
 from torsional.solvers.run_up import run_up_response
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.yaml"))
 ORDERS = np.arange(0.5, 12.5, 0.5)
-CASES = [(path, share, end) for path in EXAMPLES for share, end in ((0.2, 0), (1.0, -1))]
+CASES = [(path, share, end) for path in MODEL_FILES for share, end in ((0.2, 0), (1.0, -1))]
 
 
 @cache
@@ -77,7 +77,7 @@ def test_engine_work_is_damper_heat(path: Path, share: float, end: int) -> None:
     assert (np.abs(worked - heat) < 1e-12 * apparent).all()
 
 
-TRUCKS = [path for path in EXAMPLES if path.stem.startswith(("truck", "passenger"))]
+TRUCKS = [path for path in MODEL_FILES if path.stem.startswith(("truck", "passenger"))]
 BEHIND = ("clutch_hub", "gearbox", "propeller_shaft", "half_shafts", "tyres")
 
 

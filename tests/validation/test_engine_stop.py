@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from tests.shipped import shipped
 
-from torsional import CylinderTorques, Inertia, Powertrain, State, assemble, load_model, transient
+from torsional import CylinderTorques, Inertia, Powertrain, State, assemble, transient
 from torsional.engine import Engine
 
-ROOT = Path(__file__).parents[2]
 INERTIA, START = 4.0, 600 * np.pi / 30
 CYCLE = 4 * np.pi
 
 
 @cache
 def engine() -> Engine:
-    found = load_model(ROOT / "examples" / "truck_dmf_two_stage.yaml").engine
+    found = shipped("truck_dmf_two_stage").engine
     assert found is not None
     return found
 

@@ -6,18 +6,16 @@ gave.  Eigenvalues are taken here by SciPy from the assembled matrices, so that 
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from tests.shipped import shipped
 
-from torsional.files import changed, load_model
+from torsional.files import changed
 from torsional.model import Model
 from torsional.solvers.operating import operated
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-SMF, DMF = (load_model(EXAMPLES / f"truck_{kind}.yaml") for kind in ("smf", "dmf"))
+SMF, DMF = (shipped(f"truck_{kind}") for kind in ("smf", "dmf"))
 
 
 def modes(model: Model, gear: int) -> tuple[np.ndarray, list[str], np.ndarray]:
@@ -70,10 +68,10 @@ def test_line_behind_the_flywheel_is_the_specified_one() -> None:
 
 
 def test_power_split_and_tuned_absorber_cancel_where_their_comments_say() -> None:
-    psva = load_model(EXAMPLES / "truck_psva.yaml").document["absorber"]
+    psva = shipped("truck_psva").document["absorber"]
     j2, j3, g, r = 0.6, 0.010, psva["planet_ratio"], psva["gear_quotient"]
     assert 13e3 / (j2 * (1 - r) + j3 * g * (g - r)) == pytest.approx(282.3**2, rel=1e-3)
-    tva = load_model(EXAMPLES / "truck_dmf_tva.yaml").powertrain(12)
+    tva = shipped("truck_dmf_tva").powertrain(12)
     frequency = np.sqrt(tva["tva_spring"].stiffness / tva["tva"].inertia) / (2 * np.pi)
     assert 20 * frequency == pytest.approx(650.0, rel=1e-14)
 
@@ -81,7 +79,7 @@ def test_power_split_and_tuned_absorber_cancel_where_their_comments_say() -> Non
 @pytest.mark.parametrize(("speed", "inertia", "order3"), [(900, 0.10, 811), (1200, 0.05, 1148)])
 def test_switched_planets_cancel_at_two_speeds(speed: float, inertia: float, order3: float) -> None:
     """Without damping the secondary side stands still at ω² = k/(J3 g (g − 1)) with g = 2, shown by a dense solve."""
-    system, _ = operated(load_model(EXAMPLES / "truck_planetary_dmf.yaml"), 1000.0, 12)
+    system, _ = operated(shipped("truck_planetary_dmf"), 1000.0, 12)
     system = system.switched(speed * np.pi / 30)
     square = 13e3 / (inertia * 2)
     assert 20 * np.sqrt(square) / (2 * np.pi) == pytest.approx(order3, abs=1.0)

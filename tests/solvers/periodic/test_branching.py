@@ -24,8 +24,8 @@ from torsional.solvers.periodic import (
 from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.response import explored
 from torsional.system import System, assemble
+from torsional.units import RPM
 
-RPM = np.pi / 30
 TRUCK = Path(__file__).parents[3] / "examples" / "truck_dmf_two_stage.yaml"
 
 

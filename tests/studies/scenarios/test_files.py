@@ -6,15 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
+from tests.shipped import ROOT, shipped
 
-from torsional import ModelError, load_model
+from torsional import ModelError
 from torsional.files.scenario import adapted, load_scenario, scenario_from_document
 from torsional.files.scenario_schema import KINDS
-
-ROOT = Path(__file__).parents[3]
-RPM = np.pi / 30
+from torsional.units import RPM
 
 BAD = [
     ("engine_start", "starter.sped=3", ["starter.sped", "did you mean 'speed'?"]),
@@ -96,7 +94,7 @@ def test_files_that_are_none(tmp_path: Path, text: str, told: str) -> None:
 
 
 def test_a_scenario_overrides_values_of_the_model() -> None:
-    model = load_model(ROOT / "examples" / "truck_dmf.yaml")
+    model = shipped("truck_dmf")
     overriding = {"torsional_scenario": 1, "scenario": "stall", "model": {"absorber": {"damping": 7.0}}}
     changed = adapted(model, scenario_from_document(overriding))
     assert changed.components["dmf"].damping == 7.0  # type: ignore[attr-defined]

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.shipped import ROOT, shipped
 
-from torsional import ModelError, assemble, load_model
+from torsional import ModelError, assemble
 from torsional.components.slip_clutch import SlipClutch
 from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Starter
@@ -20,14 +21,12 @@ from torsional.studies.scenarios import planned
 from torsional.studies.scenarios.figures import contacts
 from torsional.studies.scenarios.schedule import heat_for, pulse, ramp, starter_motor
 from torsional.studies.scenarios.starting import resting
-
-ROOT = Path(__file__).parents[3]
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")
 def truck() -> Model:
-    return load_model(ROOT / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 def torque_of(governor: Governor, speed: float, time: float) -> float:
@@ -155,7 +154,7 @@ def test_a_machine_without_clutch_or_engine_says_so(truck: Model) -> None:
     bare = truck.replaced(engine=None)
     with pytest.raises(ModelError, match="no engine"):
         planned(load_scenario("engine_start"), bare)
-    marine = load_model(ROOT / "examples" / "marine_line.yaml")
+    marine = shipped("marine_line")
     with pytest.raises(ModelError, match="gears: a shift needs two gears"):
         planned(load_scenario("gear_shift"), marine)
     with pytest.raises(ModelError, match="name the one between wheels and vehicle by the key 'tyres'"):
@@ -193,7 +192,7 @@ def test_examples_are_what_holds_for_the_truck_without_them(truck: Model, path: 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_suits_a_car_as_well(kind: str) -> None:
     """Usual torques are shares of full load: none rests on the stop of a car's flywheel."""
-    car = load_model(ROOT / "examples" / "passenger_car_dmf.yaml")
+    car = shipped("passenger_car_dmf")
     plan = planned(load_scenario(kind), car)
     assert plan.duration > 0
     if "clutch_linings" in plan.line.components:

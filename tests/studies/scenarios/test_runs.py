@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import ROOT, shipped
 
-from torsional import ModelError, load_model, load_scenario, run_scenario, run_up
+from torsional import ModelError, load_scenario, run_scenario, run_up
 from torsional.model import Model
 from torsional.solvers.transient import SpeedProfile
-
-ROOT = Path(__file__).parents[3]
-RPM = np.pi / 30
+from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")
 def truck() -> Model:
-    return load_model(ROOT / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 def test_a_pulse_at_idle_leaves_a_sub_harmonic_in_springs_with_lash(truck: Model) -> None:
@@ -112,7 +110,7 @@ def test_steps_that_are_too_large_are_refused(truck: Model) -> None:
 
 def test_a_detailed_flywheel_carries_what_the_clutch_does() -> None:
     """Its springs, tabs and stop have no rows of their own; together they are the torque of the flywheel."""
-    detailed = load_model(ROOT / "examples" / "truck_dmf_arc_spring.yaml")
+    detailed = shipped("truck_dmf_arc_spring")
     run = run_scenario(detailed, load_scenario("tip_out", ["duration=0.3 s", "at=0.25 s", "before=1500 Nm"]))
     means = run.torque.sel(element=["dmf", "clutch"], time=slice(0.0, 0.24)).mean("time").values
     assert means == pytest.approx([1500.0, 1500.0], rel=0.02)
@@ -124,7 +122,7 @@ def test_a_detailed_flywheel_carries_what_the_clutch_does() -> None:
 @pytest.mark.parametrize("kind", ["arc", "straight"])
 def test_the_torque_of_a_detailed_flywheel_moves_its_secondary(kind: str) -> None:
     """J ω̇ of the secondary flywheel is that torque less the clutch's, while driving and, tabs pushed back, on coast."""
-    model = load_model(ROOT / "examples" / f"truck_dmf_{kind}_spring.yaml")
+    model = shipped(f"truck_dmf_{kind}_spring")
     changes = ["duration=0.6 s", "at=0.05 s", "before=600 Nm", "after=-120 Nm"]
     run = run_scenario(model, load_scenario("tip_out", changes))
     own, clutch = run.torque.sel(element="dmf"), run.torque.sel(element="clutch")

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
+from tests.shipped import shipped
 
-from torsional import load_model, load_scenario, run_scenario
+from torsional import load_scenario, run_scenario
 from torsional.model import Model
+from torsional.units import RPM
 
-ROOT = Path(__file__).parents[3]
-RPM = np.pi / 30
 ROAD, AXLE = 8000.0, 2.85
 """Resistance [Nm] at the vehicle, an uphill of 4 %, and ratio of the axle."""
 INPUT = {"clutch_lining": 0.03, "clutch_disc": 0.09, "gearbox_input": 0.12, "gearbox_mesh": 0.15}
@@ -30,7 +28,7 @@ ENGINE = {
 
 @pytest.fixture(scope="module")
 def truck() -> Model:
-    return load_model(ROOT / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 @pytest.fixture(scope="module")
