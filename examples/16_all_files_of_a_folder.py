@@ -17,7 +17,7 @@ def main(folder: Path = Path("examples")) -> dict[str, float]:
         modes = tv.modal(system, speed=1200 * tv.RPM)  # the speed matters to pendulums alone
         mode = int(modes.elastic_share.sel(element="clutch").argmax("mode"))
         clutch[file.stem] = 20 * float(modes.frequency[mode])
-        print(f"{file.name:33s} {truck.absorber:37s} clutch mode met at {clutch[file.stem]:4.0f} rpm")
+        print(f"{file.name:33s} {truck.absorber.kind:37s} clutch mode met at {clutch[file.stem]:4.0f} rpm")
     # 654 and 769 rpm by an independent prototype, at 1500 and 2000 Nm: the flywheel's one stage is linear
     assert round(clutch["truck_smf"]) == 654 and round(clutch["truck_dmf"]) == 769
     return clutch

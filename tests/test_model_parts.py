@@ -43,3 +43,39 @@ def test_refused(truck: tv.Model) -> None:
         truck.joined({"gearbox": tv.Inertia(1.0)})  # it stands in the gears
     with pytest.raises(tv.ModelError, match="'dmf' has no field 'dampin'; did you mean 'damping'"):
         truck.replaced("dmf", dampin=3.0)
+
+
+def test_another_absorber_takes_the_place_of_the_shipped_one(truck: tv.Model) -> None:
+    """The truck's file with an arc spring flywheel and the truck given one in Python are the same in every gear."""
+    arc = tv.load_model(ROOT / "examples" / "truck_dmf_arc_spring.yaml")
+    own = truck.with_absorber(arc.absorber)
+    assert (own.landmarks, own.absorber, own.detail) == (arc.landmarks, arc.absorber, arc.detail)
+    for gear in arc.gear_names:
+        assert tv.assemble(own.powertrain(gear)).hash == tv.assemble(arc.powertrain(gear)).hash
+    assert own.detailed().with_absorber(truck.absorber).components.keys() == truck.components.keys()
+    with pytest.raises(tv.ModelError, match="no model file describes"):
+        tv.changed(own, {"clutch.damping": 1.0})
+
+
+def test_ends_of_other_names_are_joined_rigidly(truck: tv.Model) -> None:
+    single = tv.load_model(ROOT / "examples" / "truck_smf.yaml")
+    own = truck.with_absorber(single.absorber)
+    assert own.landmarks.springs == ()
+    assert (own.absorber.kind, own.absorber_mode) == ("single mass flywheel", "absorber mode")
+    for gear in (1, 12):
+        pair = [tv.modal(tv.operated(m, 1500.0, gear)[0]).frequency.values for m in (own, single)]
+        assert pair[0] == pytest.approx(pair[1], rel=1e-9, abs=1e-6)
+    assert tv.operated(own.with_absorber(truck.absorber), 0.0)[0].hash == tv.operated(truck, 0.0)[0].hash
+
+
+def test_absorbers_refused(truck: tv.Model) -> None:
+    single = tv.load_model(ROOT / "examples" / "truck_smf.yaml")
+    with pytest.raises(tv.ModelError, match="one node would be both ends"):
+        single.with_absorber(truck.absorber)
+    with pytest.raises(tv.ModelError, match="no absorber to replace"):
+        tv.Model("bare", {}, tv.Landmarks()).with_absorber(truck.absorber)
+    odd = tv.Absorber("odd", {"primary": tv.Inertia(1.0)}, "outer", "secondary")
+    with pytest.raises(tv.ModelError, match="another node by this name"):
+        truck.with_absorber(odd)
+    with pytest.raises(tv.ModelError, match="the name is taken"):
+        truck.with_absorber(tv.Absorber("odd", {"clutch": tv.Inertia(1.0)}, "primary", "primary"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.absorbers import Absorber
 from torsional.components import Component
 from torsional.engine import Engine, FullLoad
 from torsional.engine.orders import HALF_ORDERS, BoolArray
@@ -74,9 +76,8 @@ class Landmarks:
 class Model:
     """A machine: ``components`` common to all gears, ``gears`` by name, engine, operating range, landmarks.
 
-    ``absorber`` is the kind in words; ``document`` the parsed model file (for provenance and changed copies), empty
-    once anything else was changed in Python; ``detail`` the absorber's inner parts (shoes, segments, their friction),
-    which take their places with `detailed`.
+    ``absorber`` is the one whose parts stand among the components, None without; ``document`` the parsed model file
+    (for provenance and changed copies), empty once anything else was changed in Python.
     """
 
     name: str
@@ -85,10 +86,14 @@ class Model:
     gears: Mapping[str, Gear] = field(default_factory=dict)
     engine: Engine | None = None
     operation: Operation = Operation()
-    absorber: str = ""
+    absorber: Absorber | None = None
     document: Mapping[str, Any] = field(default_factory=dict)
     parts: int = 1
-    detail: Mapping[str, Component] = field(default_factory=dict)
+
+    @property
+    def detail(self) -> Mapping[str, Component]:
+        """The absorber's inner parts (shoes, segments, their friction), which take their places with `detailed`."""
+        return self.absorber.detail if self.absorber else {}
 
     @property
     def gear_names(self) -> tuple[str, ...]:
@@ -104,7 +109,8 @@ class Model:
     def absorber_mode(self) -> str:
         """What engineers call the mode in which the absorber's springs work."""
         known = {"dual mass": "DMF mode", "planetary dual mass": "DMF mode", "power split": "PSVA mode"}
-        return next((name for kind, name in known.items() if self.absorber.startswith(kind)), "absorber mode")
+        own = self.absorber.kind if self.absorber else ""
+        return next((name for kind, name in known.items() if own.startswith(kind)), "absorber mode")
 
     @property
     def mode_groups(self) -> dict[str, tuple[str, ...]]:
@@ -210,7 +216,10 @@ class Model:
 
     def detailed(self) -> Model:
         """The model as time-domain analyses take it, the absorber's inner parts in place; itself where it has none."""
-        return replace(self, components={**self.components, **self.detail}, detail={}) if self.detail else self
+        if self.absorber is None or not self.detail:
+            return self
+        whole = replace(self.absorber, components={**self.absorber.components, **self.detail}, detail={})
+        return replace(self, components={**self.components, **self.detail}, absorber=whole)
 
     def replaced(self, part: str = "", component: Component | None = None, /, **changes: Any) -> Model:
         """A copy with one component exchanged or some of its fields changed, by its name; else with own fields changed.
@@ -235,9 +244,27 @@ class Model:
             _ = named(self.components, name)
         return self.replaced(components={name: c for name, c in self.components.items() if name not in names})
 
+    def with_absorber(self, absorber: Absorber) -> Model:
+        """A copy with another absorber in the place of its own, in every gear; its springs become the landmark.
+
+        Crankshaft and clutch keep their nodes: where the absorber's ends are named otherwise, see `Absorber.between`.
+        What else stood on bodies of the old one goes by `without` first.  Raises ModelError for a model without an
+        absorber, for names that are taken, and for springs between crankshaft and clutch where both are on one node.
+        """
+        old = self.absorber
+        if old is None:
+            raise ModelError("the model has no absorber to replace", where="absorber", remedy="use joined")
+        fitted = absorber.between(old.input, old.output)
+        rest = self.without(*(name for name in self.components if name in old.components))
+        whole = rest.joined(fitted.components).components
+        before = itertools.takewhile(lambda name: name not in old.components, self.components)
+        ordered = {name: whole[name] for name in [*before, *fitted.components]}
+        marks = replace(self.landmarks, springs=fitted.springs)
+        return self.replaced(components={**ordered, **whole}, landmarks=marks, absorber=fitted)
+
     def __repr__(self) -> str:
         gears = f", gears {', '.join(self.gears)}" if self.gears else ""
-        kind = f", {self.absorber}" if self.absorber else ""
+        kind = f", {self.absorber.kind}" if self.absorber else ""
         return f"<Model '{self.name}': {len(self.components)} components{kind}{gears}>"
 
     def _repr_html_(self) -> str:

@@ -75,7 +75,7 @@ def test_a_file_says_what_a_design_says(model: Model, design: StraightSprings | 
     assert {name: model.components[name] for name in absorber.components} == dict(absorber.components)
     whole = model.detailed().components
     assert {name: whole[name] for name in model.detail} == dict(absorber.detail)
-    assert model.absorber == design.kind and model.absorber_mode == "DMF mode"
+    assert model.absorber == absorber and absorber.kind == design.kind and model.absorber_mode == "DMF mode"
     assert model.landmarks.springs == ("dmf",)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from torsional.absorbers import Absorber
 from torsional.model import Landmarks, Model
 from torsional.report.labels import gears_told, labels, rounded, told
 
@@ -30,7 +31,9 @@ def test_labels_are_what_tells_models_apart(names: tuple[str, ...], short: list[
 
 def test_copies_of_a_model_are_told_apart_by_their_absorbers() -> None:
     kinds = ["dual mass flywheel", "power split absorber"]
-    assert labels([Model("My truck", {}, Landmarks(), absorber=kind) for kind in kinds]) == kinds
+    assert (
+        labels([Model("My truck", {}, Landmarks(), absorber=Absorber(kind, {}, "a", "b")) for kind in kinds]) == kinds
+    )
 
 
 @pytest.mark.parametrize(

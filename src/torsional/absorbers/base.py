@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from torsional.components import Component
+from torsional.components import Component, GearPair
 from torsional.errors import ModelError
+from torsional.stamps import Stamp
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,31 @@ class Absorber:
         if taken:
             raise ModelError("the name is taken", where=taken[0], remedy="give the part another name")
         return replace(self, components={**self.components, **parts}, kind=kind or self.kind)
+
+    def between(self, start: str, end: str) -> Absorber:
+        """A copy whose ``input`` and ``output`` are two other nodes, rigidly joined to those it has.
+
+        Raises ModelError for a name that is taken, and where one node would be both ends of its springs.
+
+        >>> from torsional.absorbers import single_mass_flywheel
+        >>> list(single_mass_flywheel(1.9).between("crank", "clutch").components)
+        ['flywheel', 'input_joint', 'output_joint']
+        """
+        if start == end and self.input != self.output:
+            remedy = "begin with a model whose crankshaft and clutch are on two nodes"
+            raise ModelError("one node would be both ends of the absorber", where=start, remedy=remedy)
+        ends = {(start, self.input): "input_joint", (end, self.output): "output_joint"}  # one joint if both are alike
+        joints = {name: GearPair(*pair, 1.0) for pair, name in ends.items() if pair[0] != pair[1]}
+        within = {node for part in self._stamps() for node in part.weights}
+        for joint in joints.values():
+            if joint.a in within:
+                remedy = "name input and output as the model does, or this part otherwise"
+                raise ModelError("the model has another node by this name", where=joint.a, remedy=remedy)
+        return replace(self.joined(joints), input=start, output=end)
+
+    def _stamps(self) -> Iterator[Stamp]:
+        for name, part in {**self.components, **self.detail}.items():
+            yield from part.stamps(name)
 
     def with_detail(self, parts: Mapping[str, Component], kind: str = "") -> Absorber:
         """A copy with its inner parts; those that are as in ``components`` are left out."""

@@ -79,7 +79,7 @@ def summary(model: Model, gear: str) -> Document:
     powertrain, operation, marks = model.powertrain(gear), model.operation, model.landmarks
     engine = model.engine
     told: Document = {
-        "absorber": model.absorber or None,
+        "absorber": model.absorber.kind if model.absorber else None,
         "components": len(powertrain.components),
         "nodes": list(powertrain.nodes),
         "gears": {name: each.ratio for name, each in model.gears.items()},

@@ -28,8 +28,7 @@ class Machine:
     origin: dict[str, str] = field(default_factory=dict)
     gears: dict[str, Gear] = field(default_factory=dict)
     landmarks: Landmarks = field(default_factory=Landmarks)
-    absorber: str = ""
-    detail: Parts = field(default_factory=dict)
+    absorber: Absorber | None = None
 
     def add(self, parts: Mapping[str, Component], path: str) -> None:
         """Take in the parts of a block; a name that is taken is refused."""
@@ -39,7 +38,7 @@ class Machine:
 
     def refuse_taken(self, name: str, path: str) -> None:
         """A name is taken by another block, or by an inner part of the absorber."""
-        if name in self.parts or name in self.detail:
+        if name in self.parts or (self.absorber and name in self.absorber.detail):
             problem = f"the name '{name}' is taken by {self.origin.get(name, 'absorber')}"
             raise ModelError(problem, where=path, remedy="give the component another name")
 
@@ -55,7 +54,7 @@ def machine(file: ModelFile, throws: int | None) -> Machine:
     if concept:
         _engine_side(built, file.crankshaft, concept, throws)
         built.add(concept.components, "absorber")
-        built.absorber, built.detail = concept.kind, dict(concept.detail)
+        built.absorber = concept
         built.mark(crankshaft=concept.input, springs=concept.springs)
     if file.clutch and concept:
         built.add(_clutch(file.clutch, concept.output), "clutch")

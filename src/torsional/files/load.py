@@ -96,7 +96,6 @@ def _built(file: ModelFile, document: Mapping[str, Any], known: Engine | None) -
         engine=motor,
         operation=_operation(file.operation),
         absorber=built.absorber,
-        detail=built.detail,
         document=document,
     )
     _check_powertrains(model, built)

@@ -16,8 +16,9 @@ def labels(models: Sequence[Model]) -> list[str]:
     """
     words = [model.name.split() or ["model"] for model in models]
     alike = len({tuple(w) for w in words}) == 1
-    if alike and all(model.absorber for model in models) and len({model.absorber for model in models}) == len(models):
-        return [model.absorber for model in models]
+    kinds = [model.absorber.kind if model.absorber else "" for model in models]
+    if alike and all(kinds) and len({*kinds}) == len(models):
+        return kinds
     common = 0
     while not alike and all(len(w) > common + 1 and w[common] == words[0][common] for w in words):
         common += 1

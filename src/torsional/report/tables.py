@@ -22,7 +22,7 @@ def summary_table(variant: Variant) -> Table:
     """What the model is: engine, absorber, operation, provenance."""
     model = variant.model
     rows = [("name", model.name), ("model hash", model.hash)]
-    rows += [("absorber", model.absorber)] if model.absorber else []
+    rows += [("absorber", model.absorber.kind)] if model.absorber else []
     rows += _engine_rows(model)
     rows += [("gears", f"{len(model.gears)}, ratios {_ratios(model)}")] if model.gears else []
     low, high = model.operation.speed
