@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import torsional as tv
+from tests.shipped import shipped
 from torsional.errors import ModelError
 from torsional.units import RPM
 
 
 @pytest.fixture(scope="module")
 def truck() -> tv.Model:
-    return tv.load_model(Path(__file__).parents[1] / "examples" / "truck_dmf.yaml")
+    return shipped("truck_dmf")
 
 
 def test_gears_by_name(truck: tv.Model) -> None:

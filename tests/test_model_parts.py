@@ -1,6 +1,5 @@
 """Parts of a model changed in Python: they stay, and nothing speaks of a file that no longer describes them."""
 
-
 import pytest
 
 import torsional as tv
@@ -47,7 +46,7 @@ def test_refused(truck: tv.Model) -> None:
 
 def test_another_absorber_takes_the_place_of_the_shipped_one(truck: tv.Model) -> None:
     """The truck's file with an arc spring flywheel and the truck given one in Python are the same in every gear."""
-    arc = tv.load_model(ROOT / "examples" / "truck_dmf_arc_spring.yaml")
+    arc = shipped("truck_dmf_arc_spring")
     own = truck.with_absorber(arc.absorber)
     assert (own.landmarks, own.absorber, own.detail) == (arc.landmarks, arc.absorber, arc.detail)
     for gear in arc.gear_names:
@@ -58,7 +57,7 @@ def test_another_absorber_takes_the_place_of_the_shipped_one(truck: tv.Model) ->
 
 
 def test_ends_of_other_names_are_joined_rigidly(truck: tv.Model) -> None:
-    single = tv.load_model(ROOT / "examples" / "truck_smf.yaml")
+    single = shipped("truck_smf")
     own = truck.with_absorber(single.absorber)
     assert own.landmarks.springs == ()
     assert (own.absorber.kind, own.absorber_mode) == ("single mass flywheel", "absorber mode")
@@ -69,7 +68,7 @@ def test_ends_of_other_names_are_joined_rigidly(truck: tv.Model) -> None:
 
 
 def test_absorbers_refused(truck: tv.Model) -> None:
-    single = tv.load_model(ROOT / "examples" / "truck_smf.yaml")
+    single = shipped("truck_smf")
     with pytest.raises(tv.ModelError, match="one node would be both ends"):
         single.with_absorber(truck.absorber)
     with pytest.raises(tv.ModelError, match="no absorber to replace"):

@@ -1,6 +1,5 @@
 """What a notebook shows: short tables, with units, that nothing typed by a user can break out of."""
 
-
 import numpy as np
 import pytest
 
