@@ -38,7 +38,7 @@ from torsional.numerics.stepping_tables import (
     WANTED_OF,
     Outside,
 )
-from torsional.numerics.uncounted import uncounted
+from torsional.numerics.uncounted import inner, merged, uncounted
 
 TURN = 2.0 * np.pi
 
@@ -63,7 +63,7 @@ def row_sum(rows: Rows, i: int) -> float:
     return total
 
 
-@uncounted()
+@inner()
 def _last_knot(knots: Array, first: int, last: int, t: float) -> int:
     """The last knot k in [first, last) with time ≤ t, or first − 1."""
     low, high = first, last
@@ -76,7 +76,7 @@ def _last_knot(knots: Array, first: int, last: int, t: float) -> int:
     return low - 1
 
 
-@uncounted()
+@inner()
 def _linear(knots: Array, first: int, last: int, t: float) -> float:
     """Linear between knots, constant beyond; of two knots at one time the second counts from there on."""
     k = _last_knot(knots, first, last, t)
@@ -96,7 +96,7 @@ def level_at(level_start: IntArray, knots: Array, p: int, t: float) -> float:
     return _linear(knots, level_start[p], level_start[p + 1], t)
 
 
-@uncounted()
+@inner()
 def _swept(knots: Array, first: int, t: float) -> float:
     """Integral of the linear pieces from the knot ``first`` to t."""
     count = knots.shape[1]
@@ -132,7 +132,7 @@ def profile_at(profile: Array, first: int, last: int, period: float, angle: floa
     return c[0] + x * (c[1] + x * (c[2] + x * c[3])), slope * per_angle
 
 
-@uncounted()
+@merged()
 def _source(outside: Outside, s: int, t: float, frame_angle: float, q: Array, extra: Array) -> tuple[float, float]:
     """T_s and its slope by r_s·q."""
     place, multiple, feedback = outside.source_places, outside.sources[MULTIPLE, s], outside.sources[FEEDBACK, s]
@@ -182,7 +182,7 @@ def crank_terms(
         _pendulums(outside.pendulums, rows, first_row, frame, q, v, constant, inertia)
 
 
-@uncounted()
+@inner()
 def _pendulums(
     pendulums: Array,
     rows: Rows,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.uncounted import inlined, uncounted
+from torsional.numerics.uncounted import uncounted
 
 PlaceArray = NDArray[np.uint32]
 
@@ -133,7 +133,7 @@ def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
     return worst > 0.0
 
 
-@inlined()
+@uncounted(forceinline=True)
 def substitute(couplings: PlaceArray, lower: Array, inverse: Array, x: Array) -> None:
     """The solution in place of the right-hand side x (n,), both in the order of elimination."""
     count = lower.size

@@ -35,7 +35,7 @@ from torsional.numerics.stepping_plan import (
     Pairs,
 )
 from torsional.numerics.stepping_state import LAW_TORQUE, LOAD, MEMORY, OFFSET, RATE, TORQUE, TWIST
-from torsional.numerics.uncounted import inlined, inner
+from torsional.numerics.uncounted import inner, merged
 
 ROUNDING = 1e-15
 """Share of a hinge's angle by which it may be on the wrong side: all that rounding leaves to tell."""
@@ -63,7 +63,7 @@ class Bent(NamedTuple):
     values: Array
 
 
-@inlined()
+@merged()
 def gather(pairs: Pairs, x: Array, out: Array) -> None:
     """w_e·x into ``out`` (E,)."""
     ends, weights = pairs.ends, pairs.weights
@@ -73,7 +73,7 @@ def gather(pairs: Pairs, x: Array, out: Array) -> None:
         out[pairs.extra_at[LEFT, k]] += pairs.extra[k] * x[pairs.extra_at[RIGHT, k]]
 
 
-@inlined()
+@merged()
 def scatter(pairs: Pairs, torque: Array, x: Array) -> None:
     """x ← x − Σ w_e T_e."""
     ends, weights = pairs.ends, pairs.weights
@@ -84,7 +84,7 @@ def scatter(pairs: Pairs, torque: Array, x: Array) -> None:
         x[pairs.extra_at[RIGHT, k]] -= pairs.extra[k] * torque[pairs.extra_at[LEFT, k]]
 
 
-@inlined()
+@merged()
 def scatter_one(pairs: Pairs, e: int, torque: float, x: Array) -> None:
     """x ← x − w_e T for one connection."""
     x[pairs.ends[LEFT, e]] -= pairs.weights[LEFT, e] * torque
@@ -94,14 +94,14 @@ def scatter_one(pairs: Pairs, e: int, torque: float, x: Array) -> None:
             x[pairs.extra_at[RIGHT, k]] -= pairs.extra[k] * torque
 
 
-@inlined()
+@merged()
 def torques(now: Array) -> None:
     """T = k φ + c φ̇ − shift."""
     for e in range(now.shape[1]):
         now[TORQUE, e] = now[STIFFNESS, e] * now[TWIST, e] + now[DAMPING, e] * now[RATE, e] - now[SHIFT, e]
 
 
-@inlined()
+@merged()
 def advance(now: Array, by_angle: float, by_rate: float) -> None:
     """Twists, rates and torques after δ, of which MOVED is w·δ."""
     for e in range(now.shape[1]):
@@ -129,7 +129,7 @@ def tangents(
         now[STEP, e] = by_angle * now[STIFFNESS, e] + by_rate * now[DAMPING, e]
 
 
-@inlined()
+@merged()
 def disagreeing(hinges: HingeRows, bent: Array, now: Array) -> int:
     """Hinges that are open where they should be closed, or closed where open."""
     count = 0

@@ -8,8 +8,6 @@ angle only: what the mean counts beyond that is the method's own too.
 
 from __future__ import annotations
 
-import functools
-
 from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.stepping_forces import DAMPING, DELAY, FACING, Bent
@@ -55,16 +53,14 @@ from torsional.numerics.stepping_state import (
     V,
 )
 from torsional.numerics.stepping_step import Work, inertial
-from torsional.numerics.uncounted import inlined, inner, uncounted
+from torsional.numerics.uncounted import inlined, inner, merged, uncounted
 
 PLACES = (0.046910077030668, 0.2307653449471585, 0.5, 0.7692346550528415, 0.953089922969332)
 SHARES = (0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454)
 """Gauss's five places between 0 and 1, and how much each counts."""
 
-summed = functools.partial(inlined, fastmath={"reassoc", "contract"})
 
-
-@summed()
+@merged()
 def _nodal(masses: Masses, now: Array, trial: Array, ledger: Array) -> float:
     """Work of the sources; what the kinetic energy gained beyond the work of all torques."""
     worked, through, made = 0.0, 0.0, 0.0
@@ -84,7 +80,7 @@ def _nodal(masses: Masses, now: Array, trial: Array, ledger: Array) -> float:
     return 0.5 * made
 
 
-@summed()
+@merged()
 def _damped(constants: Array, before: Array, now: Array, h: float, moving: bool, ledger: Array) -> float:
     """Loss in dampers, booked; that in hinges closed all along, given back; and the work of what rates count from."""
     damped, all_of_it = 0.0, 0.0
@@ -106,7 +102,7 @@ def _damped(constants: Array, before: Array, now: Array, h: float, moving: bool,
     return struck
 
 
-@inlined()
+@merged()
 def _turned(hinges: HingeRows, bent: Array, twist: Array, sense: Array) -> bool:
     """Whether some hinge opens or closes in the step, or one is closed by its rate alone, ahead of its spring."""
     turned = False
@@ -146,7 +142,7 @@ def _struck(hinges: HingeRows, bent: Array, now: Array, before: Array, sense: Ar
     return made
 
 
-@inner()
+@merged()
 def _guarded(hinges: HingeRows, bent: Array, now: Array, before: Array, sense: Array) -> None:
     """Loss in the contact times that the guard gave beyond the contacts' own, by connection."""
     for i in range(hinges.of.size):

@@ -50,7 +50,7 @@ from torsional.numerics.stepping_step import (
     solve,
     swing,
 )
-from torsional.numerics.uncounted import inlined, inner
+from torsional.numerics.uncounted import inlined, inner, merged
 
 STRIKES = 3
 """Passes in which no fewer hinges disagree before they are turned one by one, which always ends."""
@@ -136,7 +136,7 @@ def bend_all(
     return off
 
 
-@inlined()
+@merged()
 def _largest(now: Array, laws: Array) -> float:
     """The largest torque of a connection or law [Nm], where there are laws."""
     largest = 1e-300

@@ -62,7 +62,7 @@ from torsional.numerics.stepping_state import (
     V,
 )
 from torsional.numerics.stepping_tables import Outside
-from torsional.numerics.uncounted import inlined, inner
+from torsional.numerics.uncounted import inlined, inner, merged
 
 LONGEST = 1e300
 """Time constant [s] from which one is none."""
@@ -120,14 +120,14 @@ class Work(NamedTuple):
     bent: Bent
 
 
-@inlined()
+@merged()
 def spread(rows: Rows, i: int, torque: float, x: Array) -> None:
     """x ← x + r_i T."""
     for k in range(rows.start[i], rows.start[i + 1]):
         x[rows.column[k]] += rows.weight[k] * torque
 
 
-@inlined()
+@merged()
 def predict(now: Array, trial: Array, m: Method) -> None:
     """The motion at the step's end if the accelerations stay."""
     first, second = m.h * m.h * (0.5 - m.beta), m.h * (1.0 - m.gamma)
@@ -139,7 +139,7 @@ def predict(now: Array, trial: Array, m: Method) -> None:
         trial[V, i] = now[V, i] + second * own + m.by_rate * ahead
 
 
-@inner()
+@merged()
 def drive(outside: Outside, v: Array, integral: Array, d: Driving, trial: Array, t: float, h: float) -> None:
     """Torques of sources, governors and cranks at the end t of a step, at the motion that is predicted."""
     rows, external, sources, before = outside.rows, trial[EXTERNAL], d.sources, d.speeds[FRAME]
@@ -249,7 +249,7 @@ def refactor(
     return factor(tape, matrix, solver.lower, solver.inverse)
 
 
-@inlined()
+@merged()
 def inertial(masses: Masses, acceleration: Array, out: Array) -> None:
     """M q̈."""
     for i in range(out.size):

@@ -19,4 +19,8 @@ inlined = functools.partial(numba.njit, cache=True, error_model="numpy", _nrt=Fa
 """Decorator: the same, and part of whatever calls it."""
 
 inner = functools.partial(uncounted, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-"""Decorator: the same as `uncounted`, for compiled code alone to call: without what Python calls it by."""
+"""Decorator: the same as `uncounted`, for compiled code alone; there is nothing that Python could call, and a call from
+there ends the process."""
+
+merged = functools.partial(inner, forceinline=True)
+"""Decorator: the same as `inner`, its machine code part of whatever calls it: compiles sooner than `inlined`."""
