@@ -7,16 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Hinges, Law, contact_time
+from torsional.laws import Contacts, Hinges, Law, Polynomial, contact_time
 from torsional.powertrain import Powertrain
 from torsional.solvers.periodic import periodic_response
 from torsional.system import assemble
+
+SAME = (0.2, -0.2), (1.0, -1.0), (1.0, 1.0)
 
 
 def test_without_contact_time_they_are_hinges() -> None:
@@ -92,7 +95,7 @@ def test_closed_cycles_lose_energy_or_none(
 
 
 def test_periodic_motion_over_contacts_is_that_over_hinges() -> None:
-    """Contacts without a damper are sampled, hinges are not; a damper in the contact makes the swing smaller."""
+    """Contacts with a damper are sampled, hinges are not; a damper that is felt makes the swing smaller."""
     drive = Excitation(("disc",), [0, 1], 1.0, [[0.0, 1.0]])
 
     def swing(law: Law) -> float:
@@ -105,8 +108,25 @@ def test_periodic_motion_over_contacts_is_that_over_hinges() -> None:
         return float(abs(found.twist.sel(element="stops", order=1)).values[at])
 
     hinged = swing(Hinges(0.0, (0.5, -0.5), (1.0, -1.0), (2.0, 2.0)))
-    assert swing(Contacts.between(-0.5, 0.5, 2.0)) == pytest.approx(hinged, rel=2e-5)
+    assert swing(Contacts.between(-0.5, 0.5, 2.0, 1e-9)) == pytest.approx(hinged, rel=2e-5)
     assert 0.9 * hinged < swing(Contacts.between(-0.5, 0.5, 2.0, 0.2)) < 0.999 * hinged
+
+
+def test_branches_over_contacts_without_time_are_those_over_hinges() -> None:
+    """Nothing of them is sampled: every point, multiplier and bifurcation, also beside a law that is sampled."""
+    drive = Excitation(("disc",), [0, 1], 1.0, [[0.3, 0.5]])
+
+    def branches(law: Law, *beside: Law) -> xr.Dataset:
+        parts = {"disc": Inertia(1.0), "mount": Shaft("ground", "disc", 0.05, damping=0.04)}
+        parts |= {f"law_{i}": Coupling("ground", "disc", each) for i, each in enumerate((law, *beside))}
+        return periodic_response(assemble(Powertrain(parts)), drive, (0.5, 1.2), highest_order=7)
+
+    for beside in ((), (Polynomial((0.0, 0.0, 0.1)),)):
+        one, other = (branches(law, *beside) for law in (Contacts.lash(0.4, 1.0), Hinges(0.0, *SAME)))
+        assert one.sizes["bifurcation"] >= 2 and one.sizes == other.sizes
+        for name in ("speed", "twist", "torque", "multiplier", "bifurcation_speed"):
+            np.testing.assert_allclose(one[name].values, other[name].values, rtol=1e-9, atol=1e-9, err_msg=name)
+        assert (one.stable.values == other.stable.values).all()
 
 
 @pytest.mark.parametrize(

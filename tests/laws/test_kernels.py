@@ -16,11 +16,23 @@ from hypothesis import strategies as st
 
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.errors import ModelError
-from torsional.laws import Contacts, Coulomb, Hinges, Jenkins, Karnopp, Law, LuGre, Polynomial, Stribeck, Table, plain
+from torsional.laws import (
+    Contacts,
+    Coulomb,
+    Hinges,
+    Jenkins,
+    Karnopp,
+    Law,
+    LuGre,
+    Polynomial,
+    Stribeck,
+    Table,
+    packed,
+    plain,
+)
 from torsional.numerics.callbacks import law_at
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
-from torsional.solvers.periodic.equations import packed
 from torsional.system import assemble
 
 LAWS: dict[str, Law] = {

@@ -8,7 +8,7 @@ from typing import Any
 
 from torsional import checks
 from torsional.errors import ModelError
-from torsional.laws import Hinges, Law
+from torsional.laws import Law
 from torsional.stamps import Connection, NormalLoad
 
 
@@ -47,7 +47,8 @@ class Coupling:
         """One connection along θ_b − θ_a; a law without hinges is a plain spring."""
         weights = {self.a: -1.0, self.b: 1.0}
         more: dict[str, Any] = {"load": self.load, "whole_speed": bool(self.whole_speed)}
-        if isinstance(self.law, Hinges) and not self.law.gaps:
-            yield Connection(name, weights, self.law.stiffness, float(self.damping), **more)
+        rows = self.law.hinges()
+        if rows is not None and not rows.gap.size:
+            yield Connection(name, weights, rows.stiffness, float(self.damping), **more)
         else:
             yield Connection(name, weights, damping=float(self.damping), law=self.law, **more)

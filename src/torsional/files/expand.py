@@ -12,7 +12,7 @@ from torsional.errors import ModelError
 from torsional.files.schema.document import VERSION
 from torsional.files.schema.making import kinds
 from torsional.files.schema.parts import PartBlock
-from torsional.laws import Hinges, Jenkins
+from torsional.laws import Jenkins, Law
 from torsional.model import Gear, Model
 from torsional.stamps import SpeedSwitch
 
@@ -88,15 +88,16 @@ def _plain(value: Any) -> Any:
     return [_plain(item) for item in value] if isinstance(value, tuple) else value
 
 
-def _law(law: object, name: str) -> dict[str, Any]:
+def _law(law: Law, name: str) -> dict[str, Any]:
     """Friction by its torque and stiffness, a spring without hinges by its stiffness, any other hinge by hinge."""
     if isinstance(law, Jenkins):
         return {"friction_torque": law.limit_torque, "friction_stiffness": law.stiffness}
-    if not isinstance(law, Hinges):
+    rows = law.straight
+    if rows is None:
         raise ModelError("the file format has no such law", where=name, found=type(law).__name__)
-    if not law.gaps:
-        return {"stiffness": law.stiffness}
-    rows = zip(law.gaps, law.sides, law.changes, strict=True)
-    changes = [{"angle": gap, "side": int(side), "change": change} for gap, side, change in rows]
+    if not rows.gap.size:
+        return {"stiffness": rows.stiffness}
+    columns = zip(rows.gap.tolist(), rows.side.tolist(), rows.change.tolist(), strict=True)
+    changes = [{"angle": gap, "side": int(side), "change": change} for gap, side, change in columns]
     stops = {"stops": list(law.stops)} if law.stops else {}
-    return {"hinges": {"stiffness": law.stiffness, "changes": changes, **stops}}
+    return {"hinges": {"stiffness": rows.stiffness, "changes": changes, **stops}}

@@ -11,7 +11,7 @@ from torsional.files.load import validated
 from torsional.files.reader import Tree
 from torsional.files.schema import ModelFile
 from torsional.files.schema.fields import Quantity, quantity_of
-from torsional.laws import Hinges
+from torsional.laws import Law
 from torsional.model import Model
 from torsional.units import plausible, show
 
@@ -57,9 +57,8 @@ def _below_full_load(file: ModelFile, model: Model) -> list[str]:
 def _stop_torque(model: Model) -> float | None:
     """The torque [Nm] at which an absorber of one row of springs meets its stop on drive; None without one."""
     laws = [getattr(model.components[name], "law", None) for name in model.landmarks.springs]
-    if len(laws) != 1 or not isinstance(laws[0], Hinges) or not laws[0].stops:
-        return None
-    return float(laws[0].torque(max(laws[0].stops)))
+    law: Law | None = laws[0] if len(laws) == 1 else None
+    return float(law.torque(max(law.stops))) if law is not None and law.stops else None
 
 
 def _of_block(block: BaseModel, path: str) -> list[str]:

@@ -16,13 +16,15 @@ arrays; other compiled code finds it at the law's ``address``.  A law of one's o
 ``kernel`` and ``parameters``; no solver changes.
 """
 
-from torsional.laws.base import Law, Told, plain
-from torsional.laws.contacts import Contacts, HingeRows, contact_time, hinge_rows
+from torsional.laws.base import Law, Told, hinge_rows, plain
+from torsional.laws.contacts import Contacts, contact_time
 from torsional.laws.friction import Coulomb, Jenkins
 from torsional.laws.hinges import Hinges
 from torsional.laws.karnopp import Karnopp
 from torsional.laws.loops import Loop, hysteresis_loop
 from torsional.laws.lugre import LuGre
+from torsional.laws.packing import PackedLaws, packed
+from torsional.laws.rows import HingeRows
 from torsional.laws.smooth import Polynomial, Table
 from torsional.laws.stribeck import Stribeck
 
@@ -36,6 +38,7 @@ __all__ = [
     "Law",
     "Loop",
     "LuGre",
+    "PackedLaws",
     "Polynomial",
     "Stribeck",
     "Table",
@@ -43,5 +46,6 @@ __all__ = [
     "contact_time",
     "hinge_rows",
     "hysteresis_loop",
+    "packed",
     "plain",
 ]

@@ -13,7 +13,9 @@ from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
-from torsional.numerics.arrays import Array
+from torsional.laws.inversion import inverted
+from torsional.laws.rows import HingeRows
+from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import RETURNED, address_of, law_at
 
 Told = tuple[float, float, float, float, float, float, float, float]
@@ -80,6 +82,8 @@ class Law:
     """What it means that the law `changes_within` a swing, in words that follow the connection's name."""
     load_place: ClassVar[int] = -1
     """Place of the normal load among the parameters, of a law whose torque grows with one; −1 of any other."""
+    stops: tuple[float, ...] = ()
+    """Angles [rad] that are end stops."""
 
     @property
     def parameters(self) -> Array:
@@ -95,6 +99,49 @@ class Law:
     def address(self) -> int:
         """Where the compiled kernel is, for `torsional.numerics.callbacks.law_at`; compiled or read from disk once."""
         return address_of(type(self).kernel)
+
+    def hinges(self) -> HingeRows | None:
+        """The law as a spring and hinges, where it is a sum of them; None where it is not."""
+        return None
+
+    @property
+    def straight(self) -> HingeRows | None:
+        """The hinges of a law that is straight lines over the angle; None of any other, and where contacts have times.
+
+        Its spectra, its motion between two crossings and the stages it has are known in closed form.
+        """
+        rows = self.hinges()
+        return None if rows is None or rows.contact_time.any() else rows
+
+    @property
+    def edges(self) -> Array:
+        """Angles [rad] at which the slope changes, from left to right; none of a smooth law."""
+        return np.zeros(0)
+
+    @property
+    def transitions(self) -> tuple[float, ...]:
+        """Angles [rad] at which another stage begins: the edges that are no stops."""
+        return tuple(edge for edge in self.edges.tolist() if edge not in self.stops)
+
+    @property
+    def nearest_edge(self) -> float:
+        """The way [rad] from rest to the nearest edge on either side, one at rest not counted; zero where none is."""
+        away = np.abs(self.edges)
+        return float(away[away > 0].min()) if away.any() else 0.0
+
+    @property
+    def slopes(self) -> Array:
+        """Slopes [Nm/rad] between the edges, from left to right; of a law without edges that at rest."""
+        edges = self.edges
+        if not edges.size:
+            return self.tangent(np.zeros(1))
+        return self.tangent(np.concatenate([[edges[0] - 1.0], 0.5 * (edges[1:] + edges[:-1]), [edges[-1] + 1.0]]))
+
+    def stage(self, angle: ArrayLike) -> IntArray:
+        """Number of the segment that an angle [rad] lies in: 0 holds the angle zero, ±1 the next on either side."""
+        edges = self.edges
+        middle = np.searchsorted(edges, 0.0)
+        return np.asarray(np.searchsorted(edges, np.asarray(angle, dtype=float)) - middle, dtype=np.int64)
 
     def evaluate(
         self, angle: ArrayLike, rate: ArrayLike = 0.0, memory: ArrayLike = 0.0, step: ArrayLike = 0.0
@@ -154,6 +201,19 @@ class Law:
         """Slope of the torque [Nm/rad] at an angle [rad]."""
         return self.evaluate(angle)[1]
 
+    def angle(self, torque: ArrayLike, beside: float = 0.0) -> Array:
+        """The angle [rad] at which a rising law, and a stiffness ``beside`` it [Nm/rad], carry a torque [Nm] at rest.
+
+        Raises ModelError where none is found.
+        """
+        torque = np.asarray(torque, dtype=float)
+
+        def left(angle: Array) -> tuple[Array, Array]:
+            force, slope = self.evaluate(angle)[:2]
+            return torque - beside * angle - force, beside + slope
+
+        return inverted(left, torque)
+
     def slope_error(self, angle: ArrayLike, rate: ArrayLike = 0.0) -> float:
         """Largest difference [-] of the slopes that the kernel tells from those of its torque, over the largest slope.
 
@@ -179,10 +239,27 @@ class Law:
         return float("nan")
 
     def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
-        """Whether a linear response between two angles [rad] is no more than an approximation by a jump of the law."""
-        return np.zeros(np.broadcast(np.asarray(low), np.asarray(high)).shape, dtype=bool)
+        """Whether a swing between two angles [rad] crosses an edge: a linear response is no more than an approximation.
+
+        >>> from torsional.laws import Hinges
+        >>> Hinges.staged([(100.0, 1e3), (300.0, 4e3)]).changes_within([0.0, 0.05], [0.09, 0.15]).tolist()
+        [False, True]
+        """
+        low, high = np.broadcast_arrays(np.asarray(low, dtype=float), np.asarray(high, dtype=float))
+        edges = self.edges
+        return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
 
     def secant(self, centre: ArrayLike, amplitude: ArrayLike) -> Array:
         """Stiffness of the chord [Nm/rad] across ``centre ± amplitude`` [rad]."""
         centre, amplitude = np.asarray(centre, dtype=float), np.asarray(amplitude, dtype=float)
         return np.asarray((self.torque(centre + amplitude) - self.torque(centre - amplitude)) / (2 * amplitude))
+
+
+def hinge_rows(law: Law | None) -> HingeRows | None:
+    """The `Law.hinges` of a connection's law, which is None where the connection is linear.
+
+    >>> from torsional.laws import Contacts
+    >>> hinge_rows(Contacts.lash(0.02, 1e5)).change.tolist()
+    [100000.0, 100000.0]
+    """
+    return None if law is None else law.hinges()

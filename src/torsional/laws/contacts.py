@@ -6,17 +6,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numba
 import numpy as np
-from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
 from torsional.checks import not_negative, positive
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
-from torsional.laws.hinges import Hinges
+from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array
 
 DAMPERS = ("held", "cut")
@@ -106,6 +105,18 @@ class Contacts(Law):
         rows = np.array([self.gaps, self.sides, self.stiffnesses, self.contact_times], dtype=float)
         return np.concatenate([[float(self.damper == "cut")], rows.T.ravel()])
 
+    def hinges(self) -> HingeRows | None:
+        """One hinge a contact, with its contact time; None where the damper is cut, since the torque then jumps."""
+        if self.damper != "held":
+            return None
+        columns = (self.gaps, self.sides, self.stiffnesses, self.contact_times)
+        return HingeRows(0.0, *(np.array(column, dtype=float) for column in columns))
+
+    @property
+    def edges(self) -> Array:
+        """Angles [rad] at which a contact opens or closes, at rest."""
+        return np.unique(self.gaps)
+
     def stage_name(self, angle: float) -> str:
         """Which part an angle [rad] lies in: free play, contact, stop.
 
@@ -122,12 +133,6 @@ class Contacts(Law):
         way = 1.0 if torque >= 0 else -1.0
         ahead = [g for g, s in zip(self.gaps, self.sides, strict=True) if s == way and g in self.stops]
         return max(min(way * (g - angle) for g in ahead), 0.0) if ahead else float("nan")
-
-    def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
-        """Whether a contact opens or closes between two angles [rad]."""
-        low, high = np.broadcast_arrays(np.asarray(low, dtype=float), np.asarray(high, dtype=float))
-        edges = np.unique(self.gaps)
-        return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
 
 
 @checked
@@ -146,28 +151,3 @@ def contact_time(restitution: float, stiffness: float, inertia: float) -> float:
     positive(inertia, "inertia", "inertia")
     lost = -math.log(restitution)
     return 2 * lost / math.hypot(math.pi, lost) * math.sqrt(inertia / stiffness)
-
-
-class HingeRows(NamedTuple):
-    """A law as hinges: s max(0, Δk (s (φ − g) + τ s φ̇)) each, beside a spring k0: arrays of one length."""
-
-    stiffness: float
-    gap: Array
-    side: Array
-    change: Array
-    contact_time: Array
-
-
-def hinge_rows(law: Law | None) -> HingeRows | None:
-    """A law as a spring k0 [Nm/rad] and hinges, where it is a sum of them; None where it is not.
-
-    >>> hinge_rows(Contacts.lash(0.02, 1e5)).change.tolist()
-    [100000.0, 100000.0]
-    """
-    if isinstance(law, Hinges):
-        gap, side, change = (np.array(values, dtype=float) for values in (law.gaps, law.sides, law.changes))
-        return HingeRows(float(law.stiffness), gap, side, change, np.zeros(gap.size))
-    if isinstance(law, Contacts) and law.damper == "held":
-        values = (law.gaps, law.sides, law.stiffnesses, law.contact_times)
-        return HingeRows(0.0, *(np.array(column, dtype=float) for column in values))
-    return None

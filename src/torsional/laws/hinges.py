@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import rising_points
+from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array, IntArray
 
 
@@ -57,16 +58,9 @@ class Hinges(Law):
         values = np.array([self.stiffness, *self.gaps, *self.sides, *self.changes], dtype=float)
         if not np.isfinite(values).all() or any(s not in (-1.0, 1.0) for s in self.sides):
             raise ModelError("hinges need finite values and sides of +1 or -1", found=repr(self))
-        slope = self.tangent(self._between()).min()
+        slope = self.slopes.min()
         if slope < -1e-9 * np.abs(values).max():
             raise ModelError("the stiffness must not be negative", found=f"{slope:g} Nm/rad in one stage")
-
-    def _between(self) -> Array:
-        """One angle inside every segment, from left to right."""
-        edges = np.unique(self.gaps)
-        if not edges.size:
-            return np.zeros(1)
-        return np.concatenate([[edges[0] - 1.0], 0.5 * (edges[1:] + edges[:-1]), [edges[-1] + 1.0]])
 
     @classmethod
     def staged(
@@ -136,11 +130,15 @@ class Hinges(Law):
         rows = np.array([self.gaps, self.sides, self.changes], dtype=float)
         return np.concatenate([[self.stiffness], rows.T.ravel()])
 
-    def stage(self, angle: ArrayLike) -> IntArray:
-        """Number of the segment that an angle [rad] lies in: 0 holds the angle zero, ±1 the next on either side."""
-        edges = np.unique(self.gaps)
-        middle = np.searchsorted(edges, 0.0)
-        return np.asarray(np.searchsorted(edges, np.asarray(angle, dtype=float)) - middle, dtype=np.int64)
+    def hinges(self) -> HingeRows:
+        """The hinges as they were given, without contact times."""
+        gap, side, change = (np.array(values, dtype=float) for values in (self.gaps, self.sides, self.changes))
+        return HingeRows(float(self.stiffness), gap, side, change, np.zeros(gap.size))
+
+    @property
+    def edges(self) -> Array:
+        """Angles [rad] at which the stiffness changes, from left to right."""
+        return np.unique(self.gaps)
 
     def stage_name(self, angle: float) -> str:
         """Stages as an engineer counts them: stage 1 first; free play; stop.
@@ -159,22 +157,15 @@ class Hinges(Law):
         ahead = [abs(stop) for stop in self.stops if stop * (torque or 1.0) > 0]
         return max(min(ahead) - abs(angle), 0.0) if ahead else float("nan")
 
-    def changes_within(self, low: ArrayLike, high: ArrayLike) -> Array:
-        """Whether the stiffness changes between two angles [rad]: a linear response is no more than an approximation.
-
-        >>> Hinges.staged([(100.0, 1e3), (300.0, 4e3)]).changes_within([0.0, 0.05], [0.09, 0.15]).tolist()
-        [False, True]
-        """
-        low, high = np.broadcast_arrays(np.asarray(low, dtype=float), np.asarray(high, dtype=float))
-        edges = np.unique(self.gaps)
-        return np.asarray(((low[..., None] < edges) & (edges < high[..., None])).any(axis=-1))
-
-    def angle(self, torque: ArrayLike) -> Array:
+    def angle(self, torque: ArrayLike, beside: float = 0.0) -> Array:
         """The relative angle [rad] at which a torque [Nm] is carried; in a free range, its middle.
 
+        With a stiffness ``beside`` it [Nm/rad] as any law has it, else in closed form.
         Raises ModelError where no angle carries it (a last stage without stiffness).
         """
         torque = np.asarray(torque, dtype=float)
+        if beside != 0.0:
+            return super().angle(torque, beside)
         edges = np.unique([*self.gaps, 0.0])
         at = self.torque(edges)
         slope = self.tangent(np.array([edges[0] - 1.0, edges[-1] + 1.0]))

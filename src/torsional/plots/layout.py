@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from torsional.laws import Hinges, Jenkins, Law
+from torsional.laws import Jenkins, Law
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND, Constraint, Mass, Stamp
 from torsional.units import show
@@ -33,7 +33,9 @@ class Link:
         """
         if isinstance(self.law, Jenkins):
             return f"{show(self.law.stiffness, 'stiffness')}, slips at {show(self.law.limit_torque, 'torque')}"
-        values = stage_stiffnesses(self.law) if isinstance(self.law, Hinges) else [self.stiffness]
+        values = [self.stiffness]
+        if self.law is not None and self.law.hinges() is not None:
+            values = stage_stiffnesses(self.law)
         if not any(values):
             return ""
         *first, last = [show(value, "stiffness") for value in values]
@@ -50,19 +52,20 @@ class Chain:
     ratio: Mapping[str, float]
 
 
-def stage_stiffnesses(law: Hinges) -> list[float]:
+def stage_stiffnesses(law: Law) -> list[float]:
     """Stiffnesses [Nm/rad] of the stages a spring goes through in drive, from zero to its stop, stop left out.
 
+    >>> from torsional.laws import Hinges
     >>> stage_stiffnesses(Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6))
     [8000.0, 24000.0]
     """
     return [float(value) for value in law.tangent(np.array(stage_angles(law))) if value > 0]
 
 
-def stage_angles(law: Hinges) -> list[float]:
+def stage_angles(law: Law) -> list[float]:
     """An angle [rad] inside each stage in drive, from zero to the stop."""
     end = min((stop for stop in law.stops if stop > 0), default=np.inf)
-    edges = [0.0, *sorted(gap for gap in law.gaps if 0 < gap < end)]
+    edges = [0.0, *(edge for edge in law.edges.tolist() if 0 < edge < end)]
     inside = [0.5 * (a + b) for a, b in pairwise(edges)]
     return [*inside, 0.5 * (edges[-1] + end) if np.isfinite(end) else edges[-1] + 0.1]
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 
-from torsional.laws import Hinges, Law
+from torsional.laws import Law, hinge_rows
 from torsional.numerics.arrays import Array
 from torsional.plots import style
 from torsional.plots.branches import look
@@ -61,7 +61,7 @@ def plot_solutions(
 
 def strip_height(solutions: xr.Dataset, law: Law | None) -> float:
     """Height [inch] of the strips of stages, one a motion."""
-    return 0.26 * solutions.sizes["point"] if isinstance(law, Hinges) else 0.02
+    return 0.26 * solutions.sizes["point"] if hinge_rows(law) is not None else 0.02
 
 
 @style.styled
@@ -135,10 +135,10 @@ def stage_colour(name: str) -> str:
 
 def _shade(axes: Axes, law: Law, upright: bool) -> None:
     """Shades for the stages of a law and lines between them; stages out of sight do not widen the picture."""
-    if not isinstance(law, Hinges):
+    if hinge_rows(law) is None:
         return
     low, high = axes.get_xlim() if upright else axes.get_ylim()
-    edges = np.unique([g for g in style.shown(np.array(law.gaps), "relative_angle") if low < g < high])
+    edges = np.unique([g for g in style.shown(law.edges, "relative_angle") if low < g < high])
     borders = [low, *edges, high]
     for a, b in pairwise(borders):
         name = stage_parts(law, np.radians([0.5 * (a + b)]))[0]
@@ -167,7 +167,7 @@ def _draw_strips(axes: Axes, solutions: xr.Dataset, element: str, law: Law | Non
     for side in ("left", "bottom"):
         axes.spines[side].set_visible(False)
     axes.tick_params(bottom=False)
-    if not isinstance(law, Hinges):
+    if hinge_rows(law) is None:
         return
     signals = waveform(solutions.twist.sel(element=element), SHARE_SAMPLES)
     degrees = style.shown(signals.crank_angle.values, "crank_angle")

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from torsional.laws import Hinges, Law
+from torsional.laws import Law, hinge_rows
 from torsional.numerics.arrays import Array
 from torsional.plots import style
 
@@ -25,14 +25,14 @@ def plot_characteristic(
     """
     figure, drawn = style.on(axes, (6.4, 4.2))
     mean, swing = travel.mean_twist.values, travel.swing.values
-    stops = [s for s in law.stops if s > 0] if isinstance(law, Hinges) else []
+    stops = [s for s in law.stops if s > 0] if law is not None else []
     low, high = float(np.min(mean - swing)), float(np.max(mean + swing))
     ends = min(low, 0.0), max(high, *stops) if stops else high
     room = 0.05 * (ends[1] - ends[0])
     angle = np.linspace(ends[0] - room, ends[1] + room, 600)
     torque = stiffness * angle + (law.torque(angle) if law is not None else 0.0)
     drawn.plot(style.shown(angle, "relative_angle"), torque, color=style.INK, linewidth=2.0, label="spring")
-    if isinstance(law, Hinges):
+    if law is not None and hinge_rows(law) is not None:
         _draw_stages(drawn, law, angle)
     chosen = _widest(travel.mean_torque.values, swing)
     x, bar = style.shown(mean, "relative_angle")[chosen], style.shown(swing, "relative_angle")[chosen]
@@ -54,11 +54,11 @@ def _widest(torque: Array, swing: Array, count: int = 12) -> list[int]:
     return [int(max(np.flatnonzero(level == value), key=lambda i: swing[i])) for value in np.unique(level)]
 
 
-def _draw_stages(axes: Axes, law: Hinges, angle: Array) -> None:
+def _draw_stages(axes: Axes, law: Law, angle: Array) -> None:
     """Shades for the stages in drive, a red line at the stop."""
     stops = [stop for stop in law.stops if stop > 0]
     end = min(stops, default=float(angle[-1]))
-    edges = [0.0, *sorted(gap for gap in law.gaps if 0 < gap < end), end]
+    edges = [0.0, *(edge for edge in law.edges.tolist() if 0 < edge < end), end]
     for number, (a, b) in enumerate(pairwise(edges)):
         left, right = (float(v) for v in style.shown(np.array([a, b]), "relative_angle"))
         axes.axvspan(left, right, color=(style.SHADE, "#dbe4ec")[number % 2], zorder=0)

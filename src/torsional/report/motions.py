@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError
-from torsional.laws import Hinges, Law
+from torsional.laws import Law
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.report.finding import Finding
@@ -75,7 +75,7 @@ def motions_of(model: Model, speeds: tuple[float, float]) -> Motions | None:
 
 def has_stages(law: Law | None) -> bool:
     """Whether a law bends elsewhere than at its stops."""
-    return isinstance(law, Hinges) and bool(set(law.gaps) - set(law.stops))
+    return law is not None and law.straight is not None and bool(law.transitions)
 
 
 def _largest(region: xr.Dataset) -> dict[str, float] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from torsional.laws import Hinges, Law
+from torsional.laws import Law
 from torsional.report.analysis import Variant
 from torsional.stamps import Connection
 
@@ -21,18 +21,14 @@ class Spring:
     @property
     def stop(self) -> float | None:
         """The angle of the first stop in drive; None without one."""
-        stops = [angle for angle in self.law.stops if angle > 0] if isinstance(self.law, Hinges) else []
-        return min(stops, default=None)
+        stops = () if self.law is None else self.law.stops
+        return min((angle for angle in stops if angle > 0), default=None)
 
     @property
     def transition(self) -> float | None:
         """The first angle in drive at which another stage begins; None for a spring of one stage."""
-        edges = (
-            [gap for gap in self.law.gaps if gap > 0 and gap not in self.law.stops]
-            if isinstance(self.law, Hinges)
-            else []
-        )
-        return min(edges, default=None)
+        edges = () if self.law is None else self.law.transitions
+        return min((angle for angle in edges if angle > 0), default=None)
 
 
 def springs_of(variant: Variant) -> list[Spring]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array
 from torsional.plots.layout import stage_angles
 from torsional.quantities import swing
@@ -53,7 +52,7 @@ def widest(response: Response, element: str) -> tuple[str, xr.Dataset]:
 
 def _crossed(spring: Spring, data: xr.Dataset, name: str) -> list[Finding]:
     """Speeds at which the swing at full load runs across a change of stiffness other than the stop."""
-    edges = [gap for gap in spring.law.gaps if gap not in spring.law.stops] if isinstance(spring.law, Hinges) else []
+    edges = () if spring.law is None else spring.law.transitions
     low, high = (data.mean_twist - data.swing).values, (data.mean_twist + data.swing).values
     crossed = np.any([(low < edge) & (edge < high) for edge in edges], axis=0) if edges else np.zeros(low.shape, bool)
     if not crossed.any():
@@ -86,12 +85,13 @@ def _span(data: xr.Dataset, chosen: Array) -> tuple[str, dict[str, float]]:
 
 def stage_modes(variant: Variant, spring: Spring) -> list[Finding]:
     """For a spring of several stages the speeds at which the main order meets its mode, in the last gear."""
-    angles = stage_angles(spring.law) if isinstance(spring.law, Hinges) else []
+    law = spring.law
+    angles = [] if law is None else stage_angles(law)
     gear, order = variant.model.top_gear, variant.main_order
-    if len(angles) < 2 or order is None or not isinstance(spring.law, Hinges):
+    if law is None or len(angles) < 2 or order is None:
         return []
     parts, values, wanted = [], {}, variant.model.absorber_mode
-    for torque in (float(spring.law.torque(angle)) for angle in angles):
+    for torque in (float(law.torque(angle)) for angle in angles):
         met = campbell(variant.model, torque, [gear] if gear else None, orders=[order])
         at = met.crossing.isel(gear=0, order=0).values
         mode = next((i for i, name in enumerate(named(variant.model, met, gear)) if name == wanted), None)

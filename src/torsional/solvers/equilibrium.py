@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,15 +11,13 @@ from numpy.typing import ArrayLike
 
 from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
-from torsional.laws import Hinges, Law
+from torsional.laws import Law
 from torsional.notebook import operating_point_table
 from torsional.numerics.arrays import Array
 from torsional.numerics.null_space import null_vectors
 from torsional.system import System
 
 ITERATIONS = 100
-WIDEST = 40
-"""Doublings of a microradian that a mean twist may take."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,43 +210,9 @@ def _angles(system: System, index: int, torque: Array) -> Array:
     if law is None:
         return np.asarray(torque / stiffness) if stiffness > 0 else np.zeros_like(torque)
     try:
-        return law.angle(torque) if isinstance(law, Hinges) and stiffness == 0 else _inverted(law, stiffness, torque)
+        return law.angle(torque, stiffness)
     except ModelError as error:
         raise error.located(prefix=c.names[index]) from None
-
-
-def _inverted(law: Law, stiffness: float, torque: Array) -> Array:
-    """The angle at which a rising law and a ``stiffness`` beside it carry a torque: Newton's method in a bracket."""
-
-    def carried(angle: Array) -> tuple[Array, Array]:
-        force, slope = law.evaluate(angle)[:2]
-        return torque - stiffness * angle - force, stiffness + slope
-
-    low, high = _bracket(lambda angle: carried(angle)[0], torque)
-    angle = 0.5 * (low + high)
-    for _ in range(ITERATIONS):
-        rest, slope = carried(angle)
-        low, high = np.where(rest > 0, angle, low), np.where(rest < 0, angle, high)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            newton = angle + rest / slope
-        new = np.where((low < newton) & (newton < high), newton, 0.5 * (low + high))
-        new = np.where(rest == 0, angle, new)
-        if np.all(np.abs(new - angle) <= 1e-14 * np.abs(angle) + 1e-18):
-            return new
-        angle = new
-    return angle
-
-
-def _bracket(rest: Callable[[Array], Array], torque: Array) -> tuple[Array, Array]:
-    """Angles on either side of those at which nothing is left of each torque, doubled until they are."""
-    low, high = np.full_like(torque, -1e-6), np.full_like(torque, 1e-6)
-    for _ in range(WIDEST):
-        short, beyond = rest(high) > 0, rest(low) < 0
-        if not (short | beyond).any():
-            return low, high
-        low, high = np.where(beyond, 2 * low, low), np.where(short, 2 * high, high)
-    found = f"{torque[short | beyond].flat[0]:g} Nm"
-    raise ModelError("no angle found that carries the mean torque", found=found)
 
 
 def _forces(system: System, angle: Array) -> tuple[Array, Array, Array]:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from torsional.arguments import checked
-from torsional.laws import Hinges, Law
+from torsional.laws import Law, hinge_rows
 from torsional.numerics.arrays import Array, IntArray
 from torsional.units import QUANTITIES
 
@@ -222,7 +222,7 @@ def _nearest(result: xr.Dataset, number: int) -> int:
 
 def stage_parts(law: Law | None, angle: Array) -> list[str]:
     """The stage of a law, in words, at each relative angle [rad]; one with a negative angle is told as coasting."""
-    if not isinstance(law, Hinges):
+    if law is None or hinge_rows(law) is None:
         return ["linear" if law is None else "smooth"] * len(angle)
     names = {
         int(n): _part(law, float(angle[np.argmax(law.stage(angle) == n)]), int(n)) for n in np.unique(law.stage(angle))
@@ -230,7 +230,7 @@ def stage_parts(law: Law | None, angle: Array) -> list[str]:
     return [names[int(n)] for n in law.stage(angle)]
 
 
-def _part(law: Hinges, angle: float, number: int) -> str:
+def _part(law: Law, angle: float, number: int) -> str:
     name = law.stage_name(angle)
     return f"{name}, coast" if number < 0 else name
 
@@ -240,6 +240,7 @@ def stage_shares(law: Law | None, angle: Array) -> dict[str, float]:
 
     From coasting to driving; shares sum to one.
 
+    >>> from torsional.laws import Hinges
     >>> law = Hinges.staged([(100.0, 1e3), (300.0, 4e3)])
     >>> stage_shares(law, np.array([-0.05, 0.05, 0.05, 0.12]))
     {'stage 1': 0.75, 'stage 2': 0.25}

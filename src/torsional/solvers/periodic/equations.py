@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.laws import Hinges, Law
-from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.laws import Law, packed
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.balance_data import Balance
 from torsional.numerics.hinge_spectrum import scan_table
 from torsional.numerics.null_space import null_vectors
@@ -76,6 +75,11 @@ class Split:
     def laws(self) -> tuple[Law, ...]:
         """Their laws."""
         return tuple(law for law in self.system.connections.laws if law is not None)
+
+    @cached_property
+    def straight(self) -> bool:
+        """Whether all laws are straight lines over the angle: crossings, spectra and motions are then exact."""
+        return all(law.straight is not None for law in self.laws)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -198,8 +202,9 @@ def _reference(law: Law, sole: bool) -> float:
     """A stiffness of the law's own size: its softest stage that is not free, its slope near rest; none of friction."""
     if not law.carries_mean_torque:
         return 0.0
-    if isinstance(law, Hinges):
-        slopes = law.tangent(law._between())
+    slopes: Array
+    if law.straight is not None:
+        slopes = law.slopes
         return float(slopes[slopes > 0].min(initial=np.inf)) if (slopes > 0).any() else 1.0
     slopes = np.asarray(law.tangent(np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 9)])))
     if slopes[0] > 0:
@@ -233,7 +238,7 @@ def balance(
     values: ComplexArray = poles.poles if poles else np.zeros(0, complex)
     left: ComplexArray = split.weights @ poles.shapes.T if poles else np.zeros((len(split.laws), 0), complex)
     pairs = (left[:, None] * left).reshape(len(left) ** 2, values.size)
-    law_values, law_start, address, remembers = packed(split.laws)
+    laws = packed([law if law.straight is None else law.straight for law in split.laws])
     return Balance(
         base_order=float(base_order),
         fixed_speed=float(speed or 0.0),
@@ -251,29 +256,19 @@ def balance(
         static_load=np.ascontiguousarray(torque[:, :, 0].real @ carried.T),
         reference_stiffness=split.reference_stiffness,
         reference_damping=split.reference_damping,
-        law_values=law_values,
-        law_start=law_start,
-        address=address,
-        remembers=remembers,
+        law_values=laws.values,
+        law_start=laws.start,
+        address=laws.address,
+        remembers=laws.remembers,
         half_orders=half_orders,
-        table=scan_table(harmonics, samples or _samples(split.laws, harmonics, periods)),
+        table=scan_table(harmonics, samples or _samples(split, harmonics, periods)),
         scale=np.ascontiguousarray(scale, dtype=float),
     )
 
 
-def packed(laws: Sequence[Law]) -> tuple[Array, IntArray, IntArray, IntArray]:
-    """Parameters of all laws in a row, where each starts, addresses of kernels (0: hinges), whether they remember."""
-    values = [law.packed for law in laws]
-    starts = np.concatenate([[0], np.cumsum([v.size for v in values])])
-    address = [0 if isinstance(law, Hinges) else law.address for law in laws]
-    remembers = [int(law.remembers) for law in laws]
-    numbers: list[IntArray] = [np.asarray(v, dtype=np.int64) for v in (starts, address, remembers)]
-    return np.concatenate(values), numbers[0], numbers[1], numbers[2]
-
-
-def _samples(laws: Sequence[Law], harmonics: int, periods: int) -> int:
+def _samples(split: Split, harmonics: int, periods: int) -> int:
     """Samples of a motion: as few as find the crossings of hinges, many in each period where a law is sampled."""
-    if all(isinstance(law, Hinges) for law in laws):
+    if split.straight:
         return 0
-    least = REMEMBERING_SAMPLES if any(law.remembers for law in laws) else SMOOTH_SAMPLES
+    least = REMEMBERING_SAMPLES if any(law.remembers for law in split.laws) else SMOOTH_SAMPLES
     return periods * max(least, 1 << (16 * harmonics // periods - 1).bit_length())

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings, followed
 from torsional.numerics.piecewise_motion import PiecewiseMotion
@@ -73,7 +72,7 @@ def seeds(explorer: Explorer, value: float) -> Iterator[tuple[HarmonicProblem, A
     for branch, z in known:
         for found in _by_torque(branch.problem, z, value):
             yield branch.problem, found
-    if all(isinstance(law, Hinges) for law in explorer.setting.split.laws) and known:
+    if explorer.setting.split.straight and known:
         yield from _by_time(explorer, known[0][0].problem, known[0][1], value)
 
 

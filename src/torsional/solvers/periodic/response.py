@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from torsional.arguments import checked
 from torsional.engine import Excitation
 from torsional.errors import ModelError
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings
 from torsional.solvers.periodic.branches import TRACING, Explorer
@@ -204,11 +203,6 @@ def _angle_scale(problem: HarmonicProblem, span: tuple[float, float]) -> Array:
     values = [float(value) for value in np.linspace(*span, SIZED)]
     sizes = [np.abs(part) for value in values for part in problem.linear_size(value)]
     sizes += [RESOLVED * problem.part_motion(value) for value in values]
-    sizes.append(np.array([_nearest_hinge(law) for law in problem.setting.split.laws]))
+    sizes.append(np.array([law.nearest_edge for law in problem.setting.split.laws]))
     size = np.max(sizes, axis=0)
     return np.where(size > 0, size, size.max(initial=0.0) or 1.0)
-
-
-def _nearest_hinge(law: object) -> float:
-    gaps: Array = np.abs(np.asarray(law.gaps, dtype=float)) if isinstance(law, Hinges) else np.zeros(0)
-    return float(gaps[gaps > 0].min(initial=np.inf)) if (gaps > 0).any() else 0.0

@@ -7,7 +7,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.balance_forces import forces_along
 from torsional.numerics.continuation import Point
@@ -47,9 +46,9 @@ def _damping_and_stiffness(split: Split, at: Turning) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=256)
 def stage_bases(split: Split, at: Turning = (0.0, 0.0)) -> StageBases:
-    """The linear systems between the hinges, made once for all branches of a system whose laws are all hinges."""
+    """The linear systems between the hinges, made once for all branches of a system whose laws are all straight."""
     damping, stiffness = _damping_and_stiffness(split, at)
-    laws = [law.packed for law in split.laws]
+    laws = [rows.packed for law in split.laws if (rows := law.straight) is not None]
     return StageBases(split.matrices[0], damping, stiffness, split.weights, laws, split.rigid_turning)
 
 
@@ -66,7 +65,7 @@ def crossings_along(problem: HarmonicProblem, points: Array) -> tuple[list[Array
     found, number = np.empty((len(points), m, 4 * count + 16, 3)), np.empty((len(points), m))
     forces_along(problem.balance, points, forces, found, number)
     harmonics = problem.harmonics_of(points)
-    edges = [np.unique(law.gaps) if isinstance(law, Hinges) else np.zeros(0) for law in problem.setting.split.laws]
+    edges = [law.edges for law in problem.setting.split.laws]
     times: list[Array] = []
     stages: list[IntArray] = []
     for i in range(len(points)):
@@ -87,7 +86,7 @@ def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
     value = points[:, -1] * problem.scale[-1]
     speed = value if problem.setting.speed is None else np.full(len(points), problem.setting.speed)
     pace = problem.base_order * speed
-    if not all(isinstance(law, Hinges) for law in problem.setting.split.laws):
+    if not problem.setting.split.straight:
         found = [_sampled(problem, z, float(p)) for z, p in zip(points, pace, strict=True)]
         return ordered(np.linalg.eigvals(np.array(found)))
     times, stages = crossings_along(problem, points)

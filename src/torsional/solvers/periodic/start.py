@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.laws import Hinges, Law
+from torsional.laws import HingeRows, Hinges
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings, followed
 from torsional.solvers.equilibrium import equilibrium, settled
@@ -76,7 +76,7 @@ def _shaken(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """Vibrations of the first harmonic about several means, large enough to pass a free range from end to end."""
     setting = problem.frozen(value).setting
     static = static_angles(setting, value)
-    widths = np.array([_width(law) for law in setting.split.laws])
+    widths = np.array([law.nearest_edge for law in setting.split.laws])
     for size in (1.2, 2.0, 4.0):
         for phase in np.exp(1j * np.pi * np.arange(4) / 2):
             for shift in (0.0, 0.5, -0.5):
@@ -86,17 +86,12 @@ def _shaken(problem: HarmonicProblem, value: float) -> Iterator[Array]:
                 yield problem.point_of(at, value)
 
 
-def _width(law: Law) -> float:
-    """Half the width of what lies between the hinges nearest to rest [rad]."""
-    gaps = np.abs(np.asarray(law.gaps)) if isinstance(law, Hinges) else np.zeros(0)
-    return float(gaps[gaps > 0].min(initial=np.inf)) if (gaps > 0).any() else 0.0
-
-
 def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the law: from straight springs of the reference stiffness to what it is."""
     setting = problem.frozen(value).setting
     split, torque = setting.split, setting.load.at(value)
-    if not all(isinstance(law, Hinges) for law in split.laws):
+    rows = [own for law in split.laws if (own := law.straight) is not None]
+    if not split.straight:
         return
     speed = value if setting.speed is None else setting.speed
     load = Load.polynomial(setting.load.nodes, setting.load.orders, np.array([0.0]), torque[None])
@@ -104,11 +99,8 @@ def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     def build(share: float) -> System:
         share = min(max(share, 0.0), 1.0)
         laws = list(split.system.connections.laws)
-        for place, law, straight in zip(split.places, split.laws, split.reference_stiffness, strict=True):
-            assert isinstance(law, Hinges)
-            changes = tuple(share * change for change in law.changes)
-            base = straight + share * (law.stiffness - straight)
-            laws[place] = dataclasses.replace(law, stiffness=base, changes=changes)
+        for place, own, straight in zip(split.places, rows, split.reference_stiffness, strict=True):
+            laws[place] = _partly(own, float(straight), share)
         return dataclasses.replace(
             split.system, connections=dataclasses.replace(split.system.connections, laws=tuple(laws))
         )
@@ -122,6 +114,12 @@ def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     trace = followed(bent, bent.point_of(at, 0.0), 1, (0.0, 1.0), HOMOTOPY)
     if trace.points and trace.parameter[-1] == 1.0:
         yield _moved(trace.points[-1].z, problem, value)
+
+
+def _partly(rows: HingeRows, straight: float, share: float) -> Hinges:
+    """The law some way from a straight spring to what it is."""
+    gaps, sides, changes = (tuple(column.tolist()) for column in (rows.gap, rows.side, share * rows.change))
+    return Hinges(straight + share * (rows.stiffness - straight), gaps, sides, changes)
 
 
 def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from torsional.laws import Hinges
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.continuation import Point
 from torsional.numerics.floquet import ordered
@@ -40,10 +39,9 @@ def verdict(problem: HarmonicProblem, points: Sequence[Point]) -> Verdict:
     scaled = np.array([point.z for point in points])
     found = branch_multipliers(problem, scaled)
     stable, confirmed = np.zeros(len(points), dtype=bool), np.ones(len(points), dtype=bool)
-    hinged = all(isinstance(law, Hinges) for law in problem.setting.split.laws)
     for i, point in enumerate(points):
         told = _told(found[i], point, problem)
-        if told is None and hinged and not point.event:
+        if told is None and problem.setting.split.straight and not point.event:
             closed = _closed(problem, scaled[i])
             if closed is not None:
                 found[i] = closed
