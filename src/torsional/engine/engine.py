@@ -49,7 +49,9 @@ class Engine:
     solved so that the brake torque (gas less friction) has the wanted mean.  ``deactivated`` cylinders get no fuel:
     with valves "closed" they are gas springs that hold ``trapped_pressure`` [Pa] at bottom dead centre, with valves
     "working" they breathe.  ``heat_spread`` gives a factor on each cylinder's heat, empty for equal cylinders.
-    ``full_load`` may be left out where nobody asks for it.  The crank angle is zero at firing of cylinder 1.
+    ``full_load`` may be left out where nobody asks for it.  ``leakage_time`` [s]: a cylinder that stands still loses
+    its pressure past the rings with this time constant (in time alone; 1e9 s: it is tight).  The crank angle is zero at
+    firing of cylinder 1.
 
     Raises ModelError that names the field for a value an engine cannot have.
 
@@ -74,11 +76,13 @@ class Engine:
     trapped_pressure: float = 1.0e5
     heat_spread: tuple[float, ...] = ()
     full_load: FullLoad | None = None
+    leakage_time: float = 1.0
 
     def __post_init__(self) -> None:
         positive(self.stroke, "stroke", "length")
         not_negative(self.reciprocating_mass, "reciprocating_mass", "mass")
         within(self.crankcase_pressure, 0.0, 1e6, "crankcase_pressure", "pressure")
+        within(self.leakage_time, 1e-3, 1e9, "leakage_time", "time")
         within(self.trapped_pressure, 0.0, 2e6, "trapped_pressure", "pressure")
         for name in ("deactivated", "heat_spread"):
             object.__setattr__(self, name, tuple(getattr(self, name)))

@@ -65,6 +65,7 @@ def engine(block: EngineBlock) -> Engine:
             gas=gas,
             friction=friction,
             crankcase_pressure=block.crankcase_pressure,
+            leakage_time=block.leakage_time,
             deactivated=tuple(block.deactivated),
             deactivated_valves=block.deactivated_valves,
             trapped_pressure=block.trapped_pressure,

@@ -15,6 +15,7 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.leaking import leak_towards
 from torsional.numerics.small_linear import backsolve, factor
 from torsional.numerics.sources import (
     crank_terms,
@@ -27,6 +28,9 @@ from torsional.numerics.sources import (
 )
 from torsional.numerics.stepping_data import Connected, Equations, Rows
 from torsional.numerics.stepping_tables import SOURCE_START, SOURCE_STOP, Outside, outside_of
+
+FILLING = 1e3
+"""How fast cylinders fill through open valves [1/s]: at once, but so that a step can follow it."""
 
 
 class Places(NamedTuple):
@@ -162,6 +166,10 @@ def _drive(at: Places, t: float, y: Array, frame: tuple[float, float], torque: A
             add_row(outside.rows, outside.act + g, given, torque)
         for k in range(first, last):
             extra[outside.governed[k]] += given
+    last = at.governor + outside.governors.shape[1] - outside.leaks.shape[1]
+    for k in range(outside.leaks.shape[1]):
+        end, fast = leak_towards(outside, k, (frame[1], frame[0]), y[:n], y[n : 2 * n])
+        out[last + k] = min(fast, FILLING) * (end - y[last + k])
     source_torques(outside, t, frame[1], y[:n], extra, torques)
     for s in range(torques.size):
         add_row(outside.rows, s, torques[s], torque)

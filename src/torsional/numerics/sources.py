@@ -23,6 +23,7 @@ from torsional.numerics.stepping_tables import (
     FEEDBACK,
     HIGH,
     INTEGRAL,
+    LEAK_SOURCE,
     LEVEL_OF,
     LOW,
     MULTIPLE,
@@ -138,7 +139,7 @@ def _source(outside: Outside, s: int, t: float, frame_angle: float, q: Array, ex
     place, multiple, feedback = outside.source_places, outside.sources[MULTIPLE, s], outside.sources[FEEDBACK, s]
     level = level_at(outside.level_start, outside.knots, place[LEVEL_OF, s], t) + extra[s]
     first, last = place[PROFILE_START, s], place[PROFILE_STOP, s]
-    if first == last:
+    if first == last or level == 0.0:
         return level, 0.0
     angle = multiple * (frame_angle + feedback * row_product(outside.rows, s, q)) + outside.sources[PHASE, s]
     value, slope = profile_at(outside.profile, first, last, outside.sources[PERIOD, s], angle)
@@ -245,9 +246,12 @@ def govern(
     """
     extra[:] = 0.0
     places = outside.governor_places
-    for g in range(torque.size):
+    own = torque.size - outside.leaks.shape[1]
+    for g in range(own):
         error = governor_error(outside, g, t, frame_speed, v)
         torque[g], growth = governed_torque(outside.governors, g, error, integral[g])
         integral[g] += step * growth
         for k in range(places[SOURCE_START, g], places[SOURCE_STOP, g]):
             extra[outside.governed[k]] += torque[g]
+    for k in range(outside.leaks.shape[1]):
+        extra[int(outside.leaks[LEAK_SOURCE, k])] = integral[own + k]

@@ -16,6 +16,8 @@ from torsional.numerics.arrays import Array, IntArray
 
 PENDULUM = 7
 """Numbers that describe a pendulum."""
+LEAK = 5
+"""Numbers that describe a leak."""
 
 
 class Rows(NamedTuple):
@@ -123,6 +125,10 @@ class Governed(NamedTuple):
     The speed is that of ``sense`` (whole speed, with the frame), wanted(t) the level ``wanted_of``.  A governor
     acts as a torque along ``act`` rows, or where ``source_start`` lists sources, as a factor on top of their
     level: T_s = (level + T_g) P_s.
+
+    The last of them are the charges of cylinders that leak while they stand, ``leaks`` (C, 5): the source of each,
+    whose level the charge less one is, the rate 1/τ [1/s], the angles between which its valves are open [rad] and the
+    profile of the crankcase's pressure over its own (`torsional.numerics.leaking`); their gains are nought.
     """
 
     sense: Rows
@@ -134,6 +140,7 @@ class Governed(NamedTuple):
     high: Array
     source_start: IntArray
     source: IntArray
+    leaks: Array = np.zeros((0, LEAK))
 
 
 class Equations(NamedTuple):

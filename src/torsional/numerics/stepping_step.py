@@ -13,6 +13,7 @@ import math
 from typing import NamedTuple
 
 from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.leaking import leak
 from torsional.numerics.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.sparse_factor import Tape, factor, substitute
 from torsional.numerics.stepping_data import Rows
@@ -149,6 +150,7 @@ def drive(outside: Outside, v: Array, integral: Array, d: Driving, trial: Array,
     for g in range(d.governors.shape[1]):
         d.governors[GATHERED, g] = integral[g]
     if d.governors.shape[1]:
+        leak(outside, h, (d.speeds[ANGLE], d.speeds[FRAME]), trial[Q], trial[V], d.governors[GATHERED])
         _govern(outside, d, v, trial[V], before, t, h)
     source_torques(outside, t, d.speeds[ANGLE], trial[Q], sources[EXTRA], sources[GIVEN])
     for s in range(sources.shape[1]):

@@ -27,6 +27,9 @@ PROPORTIONAL, INTEGRAL, LOW, HIGH = range(4)
 WANTED_OF, SOURCE_START, SOURCE_STOP = range(3)
 """Rows of ``governor_places``."""
 
+LEAK_SOURCE, LEAK_RATE, OPENS, CLOSES, RATIO_START, RATIO_STOP, RATIO_PERIOD = range(7)
+"""Rows of ``leaks``, a column a charge, the last of the governors."""
+
 
 class Outside(NamedTuple):
     """What acts from outside, and what rotations count from: `Driven`, `Governed`, frame and reference of `Equations`.
@@ -47,6 +50,7 @@ class Outside(NamedTuple):
     governors: Array
     governor_places: IntArray
     governed: IntArray
+    leaks: Array
     crank_row: int
     sense: int
     act: int
@@ -80,6 +84,7 @@ def tables_of(
         governors=np.array([governed.proportional, governed.integral, governed.low, governed.high]),
         governor_places=_integers([governed.wanted_of, governed.source_start[:-1], governed.source_start[1:]]),
         governed=governed.source,
+        leaks=_leaks(driven, governed),
         crank_row=crank_row,
         sense=sense,
         act=act,
@@ -109,6 +114,13 @@ def _source_places(driven: Driven) -> IntArray:
         [int(driven.profile_start[p + beyond]) if p >= 0 else 0 for p in driven.profile_of] for beyond in (0, 1)
     )
     return _integers([start, stop, driven.level_of])
+
+
+def _leaks(driven: Driven, governed: Governed) -> Array:
+    """Leaks with where the profiles of their pressures are."""
+    ratio = governed.leaks[:, -1].astype(np.int64)
+    places = driven.profile_start[ratio], driven.profile_start[ratio + 1], driven.period[ratio]
+    return np.ascontiguousarray(np.vstack([governed.leaks[:, :-1].T, *places]), dtype=float)
 
 
 def _integers(rows: Sequence[ArrayLike]) -> IntArray:

@@ -173,3 +173,14 @@ def test_a_run_at_full_load_keeps_its_speed_and_pays_for_its_vibration(truck: Mo
 def test_a_run_takes_time(truck: Model, duration: float, step: float | None, said: str) -> None:
     with pytest.raises(ModelError, match=f"{said}.*positive time"):
         run_up(truck, 90.0, 100.0, duration, step=step)
+
+
+def test_compression_leaves_a_stalled_line(truck: Model) -> None:
+    """What is left in the flywheel is what the friction of the engine at rest holds, and no longer compression."""
+    run = run_scenario(truck, load_scenario("stall", ["duration=9 s"]))
+    torque = np.abs(run.torque.sel(element="dmf").sel(time=[1.0, 9.0], method="nearest").values)
+    rubbing = [name for name in run.element.values if str(name).startswith("friction_")]
+    held = float(np.abs(run.torque.sel(element=rubbing)[-1]).sum())
+    assert torque[0] > 500 and torque[1] < 0.15 * torque[0]
+    assert torque[1] <= 1.02 * held
+    assert float(abs(run.angular_velocity.sel(node="primary")[-1])) < 0.01 * RPM

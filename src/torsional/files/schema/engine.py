@@ -139,6 +139,9 @@ class EngineBlock(Block):
         Annotated[FullLoadBlock, BeforeValidator(_as_file, json_schema_input_type=str | FullLoadBlock)] | None
     ) = Field(None, description="CSV file, or lists of speed and torque")
     crankcase_pressure: Pressure = 1.0e5
+    leakage_time: Annotated[float, Quantity("time", above=0)] = Field(
+        1.0, description="in which a cylinder at standstill loses its pressure past the rings"
+    )
     deactivated: Cylinders = Field([], description="cylinders without fuel")
     deactivated_valves: Literal["closed", "working"] = "closed"
     trapped_pressure: Pressure = Field(1.0e5, description="at bottom dead centre of cylinders with closed valves")

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.stepping_data import Driven, Governed, rows_of
+from torsional.numerics.stepping_data import LEAK, Driven, Governed, rows_of
 from torsional.solvers.transient.drags import Drag
 from torsional.solvers.transient.profiles import Level, Profile
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -56,15 +56,27 @@ class Governing(NamedTuple):
     high: float
 
 
+class Leak(NamedTuple):
+    """The charge of a cylinder that leaks while it stands, at a ``rate`` [1/s]: the level of its ``source`` is the
+    charge less one; ``ratio``: the crankcase's pressure over its own; open from ``opens`` to ``closes`` [rad]."""
+
+    source: Source
+    ratio: Profile
+    rate: float
+    opens: float
+    closes: float
+
+
 class Acting(NamedTuple):
     """All that drives do; ``taken_up``: torques over time (row, level) that belong to the mean load of the line;
-    ``drags``: friction that they bring along."""
+    ``drags``: friction that they bring along; ``leaks``: charges of cylinders."""
 
     sources: tuple[Source, ...] = ()
     cranks: tuple[Crank, ...] = ()
     governors: tuple[Governing, ...] = ()
     taken_up: tuple[tuple[Array, Level], ...] = ()
     drags: tuple[Drag, ...] = ()
+    leaks: tuple[Leak, ...] = ()
 
     def joined(self, other: Acting) -> Acting:
         """Both together."""
@@ -74,6 +86,7 @@ class Acting(NamedTuple):
             self.governors + other.governors,
             self.taken_up + other.taken_up,
             self.drags + other.drags,
+            self.leaks + other.leaks,
         )
 
 
@@ -133,7 +146,7 @@ def assembled(
 
 
 def _driven(acting: Acting, coordinates: int, tables: _Tables) -> Driven:
-    sources, cranks = acting.sources, acting.cranks
+    sources, cranks = acting.sources + tuple(leak.source for leak in acting.leaks), acting.cranks
     none, nothing = np.zeros(0), np.zeros(0, dtype=np.int64)
     return Driven(
         rows_of(_stacked([s.row for s in sources], coordinates)),
@@ -160,20 +173,27 @@ def _driven(acting: Acting, coordinates: int, tables: _Tables) -> Driven:
 
 
 def _governed(acting: Acting, coordinates: int, tables: _Tables) -> Governed:
-    governors = acting.governors
-    still = np.zeros(coordinates)
+    governors, leaks, ahead = acting.governors, acting.leaks, len(acting.sources)
+    still, none = np.zeros(coordinates), [0.0] * len(leaks)
     governed = [i for i, source in enumerate(acting.sources) if source.governed]
-    own = [governed if g.act is None else [] for g in governors]
+    own = [governed if g.act is None else [] for g in governors] + [[ahead + k] for k in range(len(leaks))]
+    ratios = [tables.profile(leak.ratio) for leak in leaks]
+    told = [
+        (ahead + k, c.rate, c.opens, c.closes, ratio) for k, (c, ratio) in enumerate(zip(leaks, ratios, strict=True))
+    ]
     return Governed(
-        rows_of(_stacked([g.sense for g in governors], coordinates)),
-        rows_of(_stacked([still if g.act is None else g.act for g in governors], coordinates)),
-        _whole([tables.level(g.wanted) for g in governors]),
-        _floats([g.proportional for g in governors]),
-        _floats([g.integral for g in governors]),
-        _floats([g.low for g in governors]),
-        _floats([g.high for g in governors]),
+        rows_of(_stacked([*(g.sense for g in governors), *([still] * len(leaks))], coordinates)),
+        rows_of(
+            _stacked([*(still if g.act is None else g.act for g in governors), *([still] * len(leaks))], coordinates)
+        ),
+        _whole([*(tables.level(g.wanted) for g in governors), *([-1] * len(leaks))]),
+        _floats([*(g.proportional for g in governors), *none]),
+        _floats([*(g.integral for g in governors), *none]),
+        _floats([*(g.low for g in governors), *([-1.0] * len(leaks))]),
+        _floats([*(g.high for g in governors), *([np.inf] * len(leaks))]),
         np.cumsum([0, *(len(o) for o in own)]).astype(np.int64),
         _whole([i for o in own for i in o]),
+        np.array(told, dtype=float).reshape(len(leaks), LEAK),
     )
 
 

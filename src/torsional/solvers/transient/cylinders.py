@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from torsional.engine import Engine
+from torsional.engine import CombustionCycle, Engine
 from torsional.engine.excitation import checked_nodes
 from torsional.engine.orders import CYCLE, crank_angle_grid
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import torque_places
-from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
+from torsional.solvers.transient.acting import Acting, Crank, Leak, Source, row_of
 from torsional.solvers.transient.drags import Drag, taken
 from torsional.solvers.transient.drives import at_start
 from torsional.solvers.transient.profiles import Level, Profile, level_of, through
@@ -27,6 +27,7 @@ SAMPLES = 2880
 SQUARES = 33
 """Knots of the square of a speed that changes."""
 ABOVE = 1e-9
+NOTHING = Level(np.zeros(1), np.zeros(1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,8 @@ class CylinderTorques:
     ``level`` over ``level_times`` [s] is the heat of combustion: 1 that of the operating point, 0 a motored engine
     (with the intake pressure of no load), between them in proportion, with the friction that its pressure adds.  The
     friction of the motored engine acts against the crank's own speed, see `friction`, and holds it at standstill.
-    ``feedback``: the crank's own motion moves the events, and friction grows with it.  ``reciprocating``: "exact" gives
+    ``feedback``: the crank's own motion moves the events, friction grows with it, and cylinders that stand lose their
+    charge past the rings within the engine's ``leakage_time``.  ``reciprocating``: "exact" gives
     −m x'(x'' θ̇² + x' θ̈) with the instantaneous speed, less the half-share m r²/2 that is in the throw's inertia;
     "half-share" −m x' x'' Ω² at the mean speed, as in the frequency domain; "none" leaves it out.
     Raises ModelError for anything else, and as `Engine.operated` does.
@@ -82,7 +84,8 @@ class CylinderTorques:
         """Two sources a throw, motored and burnt; one crank a cylinder, or one more source a throw."""
         rows = [row_of(system, node) for node in self.nodes]
         gas = self._gas(rows)
-        found = Acting(gas, taken_up=at_start(Acting(gas))).joined(self._rubbing(rows, speed))
+        found = Acting(gas, taken_up=at_start(Acting(gas)), leaks=self._leaks(rows))
+        found = found.joined(self._rubbing(rows, speed))
         if self.reciprocating == "exact":
             return found.joined(Acting(cranks=self._cranks(rows)))
         if self.reciprocating == "half-share":
@@ -147,11 +150,31 @@ class CylinderTorques:
         hot = [Source(row, p, level, follows, governed=True) for row, p in zip(rows, burnt, strict=True)]
         return (*still, *hot)
 
+    def _leaks(self, rows: Sequence[Array]) -> tuple[Leak, ...]:
+        """The charge of each cylinder, (c − 1) A x' p being its torque beyond that of the motored engine."""
+        if not self.feedback:
+            return ()
+        engine, layout = self.engine, self.engine.layout
+        pressures = engine.operated(self.speed, self._motored).coefficients[0] @ engine.pressure_shapes.shapes
+        shapes = [through(engine.cylinder.lever * p, 2.0) for p in pressures]
+        ratios = [through(engine.crankcase_pressure / p, 2.0) for p in pressures]
+        gas = engine.gas if isinstance(engine.gas, CombustionCycle) else CombustionCycle()
+        window = gas.exhaust_opening, CYCLE + gas.intake_closing
+        found = []
+        for throw, angle, g in zip(layout.throws, layout.firing_angles, engine.groups.of_cylinder, strict=True):
+            source = Source(self._of_throw(rows, throw), shapes[g], NOTHING, 1.0, -float(angle))
+            found.append(Leak(source, ratios[g], 1.0 / engine.leakage_time, *window))
+        return tuple(found)
+
+    def _of_throw(self, rows: Sequence[Array], throw: int) -> Array:
+        """The row of a throw, or that of the one node for all."""
+        return rows[throw - 1 if len(rows) > 1 else 0]
+
     def _cranks(self, rows: Sequence[Array]) -> tuple[Crank, ...]:
         engine, crank = self.engine, self.engine.crank
         mass = engine.reciprocating_mass
         lengths = crank.crank_radius, crank.rod_length, crank.pin_offset
-        on = [rows[throw - 1 if len(rows) > 1 else 0] for throw in engine.layout.throws]
+        on = [self._of_throw(rows, throw) for throw in engine.layout.throws]
         included = crank.half_share(mass)
         firing = engine.layout.firing_angles
         return tuple(Crank(row, -float(angle), mass, *lengths, included) for row, angle in zip(on, firing, strict=True))

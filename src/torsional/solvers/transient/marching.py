@@ -107,8 +107,9 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
         angle=records.q[-1],
         speed=records.v[-1],
         memory=memory[-1],
-        integral=told.state.integral,
+        integral=told.state.integral[: len(problem.acting.governors)],
         reference=float(told.state.reference[0]),
+        charge=told.state.integral[len(problem.acting.governors) :],
         standing=told.state,
         step=accuracy.step,
     )
@@ -150,7 +151,7 @@ def _standing(problem: Problem, state: State, step: float) -> Standing:
             time=state.time,
             memory=state.memory[problem.plan.laws.of],
             reference=state.reference,
-            integral=state.integral if state.integral.size else 0.0,
+            integral=_remembered(problem, state),
             step=step,
         )
     if state.step == step:
@@ -158,6 +159,15 @@ def _standing(problem: Problem, state: State, step: float) -> Standing:
     counts = state.standing.counts.copy()
     counts[Count.BASE_STEPS] = counts[Count.RUNG] = 0
     return state.standing._replace(counts=counts, begin=np.array([state.time]))
+
+
+def _remembered(problem: Problem, state: State) -> Array:
+    """Integrals of the governors, and charges of the cylinders less one behind them; full ones where other cylinders
+    or none were there before."""
+    governors, leaks = len(problem.acting.governors), len(problem.acting.leaks)
+    known = state.charge is not None and len(state.charge) == leaks
+    charge = state.charge if state.charge is not None and known else np.zeros(leaks)
+    return np.append(state.integral if state.integral.size else np.zeros(governors), charge)
 
 
 def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) -> Marched:
@@ -171,7 +181,7 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         bristles=address_of(LuGre.kernel),
         sliders=address_of(Jenkins.kernel),
         reference_speed=state.reference,
-        integral=state.integral if state.integral.size else 0.0,
+        integral=_remembered(problem, state),
         memory=state.memory,
     )
     torque, load = np.zeros((2, *run.memories.shape))
@@ -182,8 +192,9 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         angle=run.angles[-1],
         speed=run.rates[-1],
         memory=run.memories[-1],
-        integral=run.integrals[-1],
+        integral=run.integrals[-1, : len(problem.acting.governors)],
         reference=float(run.references[-1]),
+        charge=run.integrals[-1, len(problem.acting.governors) :],
     )
     return Marched(
         time=times,

@@ -97,11 +97,13 @@ def _rubs(law: Law | None) -> bool:
 
 def ending(end: State) -> dict[str, Variable]:
     """The last state, from which another run can go on."""
+    charge = {} if end.charge is None or not len(end.charge) else {"end_charge": (("charge",), end.charge, "")}
     return {
         "end_angle": (("coordinate",), end.angle, "angle"),
         "end_speed": (("coordinate",), end.speed, "angular_velocity"),
         "end_memory": (("connection",), end.memory, "relative_angle"),
         "end_integral": (("governor",), end.integral, ""),
+        **charge,
     }
 
 

@@ -28,8 +28,8 @@ SMALL, HARMONICS, SAMPLES = 1e-6, 40, 720
 class State:
     """A moment of a line: ``time`` [s], ``angle`` [rad] and ``speed`` [rad/s] of the coordinates as deviations,
     ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero), ``reference``
-    rotation that dampers count from [rad/s] (None: the reference node's).  A march leaves besides its own ``standing``
-    and ``step``, from which it goes on to the last bit."""
+    rotation that dampers count from [rad/s] (None: the reference node's), ``charge`` of the cylinders less one (None:
+    full).  A march leaves besides its own ``standing`` and ``step``, from which it goes on to the last bit."""
 
     time: float
     angle: Array
@@ -39,6 +39,7 @@ class State:
     reference: float | None = None
     standing: Standing | None = None
     step: float = 0.0
+    charge: Array | None = None
 
     @classmethod
     def at_rest(cls, system: System, time: float = 0.0) -> State:
@@ -48,13 +49,12 @@ class State:
 
     def since(self, time: float) -> State:
         """The same at another time [s]."""
-        return State(time, self.angle, self.speed, self.memory, self.integral, self.reference)
+        return replace(self, time=time, standing=None, step=0.0)
 
     def moved(self, angle: Array | float, speed: Array | float, memory: Array | float = 0.0) -> State:
         """The state a little off, at the same time."""
-        return State(
-            self.time, self.angle + angle, self.speed + speed, self.memory + memory, self.integral, self.reference
-        )
+        moved = (self.angle + angle, self.speed + speed, self.memory + memory)
+        return State(self.time, *moved, self.integral, self.reference, charge=self.charge)
 
     @classmethod
     def ending(cls, run: xr.Dataset, system: System) -> State:
@@ -65,7 +65,9 @@ class State:
         angle, speed, memory, integral = (np.asarray(run[f"end_{name}"].values, dtype=float) for name in ENDING)
         turning = float(run.attrs.get("end_reference", np.nan))
         reference = turning if np.isfinite(turning) else None
-        return cls(float(run.attrs.get("end_time", 0.0)), angle, speed, memory, integral, reference)
+        charge = np.asarray(run.end_charge.values, dtype=float) if "end_charge" in run else None
+        time = float(run.attrs.get("end_time", 0.0))
+        return cls(time, angle, speed, memory, integral, reference, charge=charge)
 
 
 def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
@@ -205,7 +207,9 @@ def _balanced_twists(system: System, load: Array, hold: str, size: float) -> Arr
 
 def _carrying(system: System) -> NDArray[np.bool_]:
     c = system.connections
-    return np.asarray((c.stiffness > 0) | np.array([law is not None and law.carries_mean_torque for law in c.laws]))
+    return np.asarray(
+        (c.stiffness > 0) | np.array([law is not None and law.carries_mean_torque for law in c.laws], dtype=bool)
+    )
 
 
 def angles_of(system: System, twist: Array, hold: str) -> Array:

@@ -65,7 +65,7 @@ def carried_over(state: State, old: Turning, new: Turning, crank: str) -> State:
     own = [memory.get(name, 0.0) for name in new.system.connections.names]
     kept = np.array([*own, *state.memory[len(names) :]])  # behind them what drives remember, as the engine's friction
     angle = _angles(state, old, new, crank, places)
-    return State(state.time, angle, speed, kept, state.integral, state.reference)
+    return State(state.time, angle, speed, kept, state.integral, state.reference, charge=state.charge)
 
 
 def _places(old: Turning, new: Turning) -> list[int]:
