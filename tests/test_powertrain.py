@@ -1,12 +1,15 @@
 """What cannot be a powertrain is refused by name; what can is changed by copies."""
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from torsional.components import Damper, GearPair, Inertia, PlanetaryGear, Shaft, Superposition
+from torsional.absorbers import CentrifugalPendulum
+from torsional.components import Coupling, Damper, GearPair, Inertia, PlanetaryGear, Shaft, Superposition
 from torsional.errors import ModelError
+from torsional.laws import Hinges
 from torsional.powertrain import Powertrain
 from torsional.stamps import Constraint
 from torsional.system import assemble
@@ -138,3 +141,20 @@ def test_planets_spin_with_the_carrier_when_locked() -> None:
 def test_superposition_weights_sum_to_one() -> None:
     line = Powertrain({**discs("a", "b", "c"), "g": Superposition("c", "a", "b", 0.7), "s": Shaft("a", "b", 1e3)})
     assert np.allclose(line.structure.speed_ratio, 1.0)
+
+
+def test_picked_connections_are_whole() -> None:
+    """Every field of the chosen ones, in the order asked for; with other weights where such are given."""
+    parts = {
+        "disc": Inertia(1.0),
+        "mount": Shaft("ground", "disc", 1e4, damping=3.0, loss_factor=0.1),
+        "pendulum": CentrifugalPendulum("disc", mass=1.0, distance=0.1, order=1.5, damping=0.02),
+        "stop": Coupling("ground", "disc", Hinges(0.0, (0.1,), (1.0,), (2.0,))),
+    }
+    c = assemble(Powertrain(parts)).connections
+    some, turned = c.picked([2, 0]), c.picked([1], np.array([[3.0, 4.0]]))
+    for field in dataclasses.fields(c):
+        told = getattr(c, field.name)
+        assert list(map(repr, getattr(some, field.name))) == [repr(told[2]), repr(told[0])], field.name
+    assert turned.weights.tolist() == [[3.0, 4.0]] and turned.swings == (c.swings[1],) != (None,)
+    assert c.values[0].tolist() == [1e4, 3.0, 0.1, 0.0]

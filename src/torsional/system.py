@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.notebook import html_table
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.null_space import transformed
 from torsional.powertrain import Powertrain
 from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch, Swing
@@ -23,6 +24,9 @@ from torsional.structure import weight_rows
 from torsional.units import show
 
 BoolArray = NDArray[np.bool_]
+
+VALUES = ("stiffness", "damping", "loss_factor", "centrifugal_stiffness")
+"""What `Connections` have one number of each: with the weights the whole of a linear connection."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +59,21 @@ class Connections:
     loads: tuple[NormalLoad | None, ...]
     whole_speed: BoolArray
     swings: tuple[Swing | None, ...] = ()
+
+    @property
+    def values(self) -> Array:
+        """The numbers of every connection, (connections, 4): stiffness, damping, loss factor, centrifugal stiffness."""
+        return np.column_stack([getattr(self, name) for name in VALUES])
+
+    def picked(self, index: Sequence[int] | IntArray, weights: Array | None = None) -> Connections:
+        """Some of the connections, in the order of ``index``, or with other ``weights`` (chosen, coordinates)."""
+        chosen = np.asarray(index, dtype=np.int64)
+        some: dict[str, Any] = {name: getattr(self, name)[chosen] for name in (*VALUES, "weights", "whole_speed")}
+        some |= {
+            name: tuple(getattr(self, name)[i] for i in chosen)
+            for name in ("names", "laws", "loads", *(("swings",) if self.swings else ()))
+        }
+        return dataclasses.replace(self, **some if weights is None else some | {"weights": weights})
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,16 +130,7 @@ class System:
     def hash(self) -> str:
         """Sixteen hexadecimal digits that tell this system from every other: names, weights, values, laws."""
         c, m = self.connections, self.masses
-        values = (
-            self.T,
-            m.weights,
-            m.inertia,
-            c.weights,
-            c.stiffness,
-            c.damping,
-            c.loss_factor,
-            c.centrifugal_stiffness,
-        )
+        values = (self.T, m.weights, m.inertia, c.weights, *(getattr(c, name) for name in VALUES))
         named: tuple[object, ...] = (self.nodes, c.names, m.names, m.switches, c.laws)
         if any(c.loads) or c.whole_speed.any():
             named = (*named, c.loads, c.whole_speed.tolist())
@@ -146,8 +156,7 @@ class System:
     def shares_linear_part(self, other: System) -> bool:
         """Whether two systems differ in nothing but their laws."""
         mine, theirs = ((s.connections, s.masses) for s in (self, other))
-        fields = ("weights", "stiffness", "damping", "loss_factor", "centrifugal_stiffness")
-        same = all(np.array_equal(getattr(mine[0], name), getattr(theirs[0], name)) for name in fields)
+        same = all(np.array_equal(getattr(mine[0], f), getattr(theirs[0], f)) for f in ("weights", *VALUES))
         return same and all(np.array_equal(getattr(mine[1], f), getattr(theirs[1], f)) for f in ("weights", "inertia"))
 
     def node_index(self, node: str) -> int:
@@ -183,8 +192,11 @@ class System:
                     found = f"a share of the torque of '{name}'"
                     raise ModelError("the normal load follows a torque", where=c.names[i], found=found, remedy=remedy)
             laws[i] = law.loaded(load.at(speed, known))
-        settled = dataclasses.replace(c, laws=tuple(laws), loads=(None,) * len(laws))
-        return dataclasses.replace(self, connections=settled)
+        return self.with_connections(laws=tuple(laws), loads=(None,) * len(laws))
+
+    def with_connections(self, **changes: Any) -> System:
+        """The same system with other values of its `Connections`, as ``laws`` or ``damping``."""
+        return dataclasses.replace(self, connections=dataclasses.replace(self.connections, **changes))
 
 
 def _told(stiffness: float, damping: float) -> tuple[str, str]:

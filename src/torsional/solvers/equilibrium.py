@@ -130,13 +130,13 @@ def linearize(system: System, point: OperatingPoint) -> System:
     """
     if point.names != system.connections.names:
         raise ModelError("the operating point belongs to another system", found=", ".join(point.names[:8]))
-    c = with_load_stiffness(system).connections
+    pressed = with_load_stiffness(system)
+    c = pressed.connections
     plain = [law is None for law in c.laws]
     stiffness, damping = (
         np.where(plain, old, new) for old, new in ((c.stiffness, point.stiffness), (c.damping, point.damping))
     )
-    connections = dataclasses.replace(c, stiffness=stiffness, damping=damping, laws=(None,) * len(point.names))
-    return dataclasses.replace(system, connections=connections)
+    return pressed.with_connections(stiffness=stiffness, damping=damping, laws=(None,) * len(point.names))
 
 
 def with_load_stiffness(system: System) -> System:
@@ -158,8 +158,7 @@ def with_load_stiffness(system: System) -> System:
         rest = bool(load.constant or load.shares)
         laws[i] = law if rest else law.loaded(0.0)
         loads[i] = dataclasses.replace(load, centrifugal=0.0) if rest else None
-    taken = dataclasses.replace(c, centrifugal_stiffness=lift, loads=tuple(loads), laws=tuple(laws))
-    return dataclasses.replace(system, connections=taken)
+    return system.with_connections(centrifugal_stiffness=lift, loads=tuple(loads), laws=tuple(laws))
 
 
 def _balanced(system: System, torques: Mapping[str, ArrayLike], hold: str) -> Array:
@@ -191,7 +190,7 @@ def _without_friction(system: System) -> System:
     idle = c.whole_speed | (c.centrifugal_stiffness > 0)
     pairs = zip(c.laws, idle, strict=True)
     laws = tuple(law if law and law.carries_mean_torque and not without else None for law, without in pairs)
-    return dataclasses.replace(system, connections=dataclasses.replace(c, laws=laws))
+    return system.with_connections(laws=laws)
 
 
 def _take_along(system: System, angle: Array, carrying: Array) -> None:

@@ -105,7 +105,7 @@ def _one_gear(
     nodes = [system.node_index(node) for node in places[0]]
     twisted = _elements(system, places[1])
     angle = (q @ system.T[nodes].T).reshape(shape)
-    part = _picked(system, twisted)
+    part = dataclasses.replace(system, connections=system.connections.picked(twisted))
     told = {key: value[:, twisted] for key, value in values.items()}
     torque = element_torques(part, omega, turning, q, told).reshape(shape)
     return angle, torque, state.angle[:, twisted], status.reshape(shape[:-1]), system.speed_ratio[nodes]
@@ -117,12 +117,3 @@ def _elements(system: System, names: list[str]) -> list[int]:
         if name not in known:
             raise ModelError(f"there is no connection '{name}'", where=name, remedy=nearest(name, known))
     return [known.index(name) for name in names]
-
-
-def _picked(system: System, index: list[int]) -> System:
-    """The system with some of its connections only, for their torques."""
-    c = system.connections
-    fields = ("weights", "stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
-    rows = {key: getattr(c, key)[index] for key in fields}
-    rows |= {key: tuple(getattr(c, key)[i] for i in index) for key in ("names", "laws", "loads")}
-    return dataclasses.replace(system, connections=dataclasses.replace(c, **rows))

@@ -9,7 +9,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
-from torsional.solvers.hysteresis.parts import grouped, picked
+from torsional.solvers.hysteresis.parts import grouped
 from torsional.system import BoolArray, Connections, System
 
 NOTHING = 1e-9
@@ -97,7 +97,10 @@ def _relevant(free: Array, drive: Array, rotates: BoolArray) -> tuple[BoolArray,
 
 
 def _restricted(c: Connections, rows: Array, relevant: BoolArray) -> Connections:
-    """The connections that take part, and those whose torque presses on one of them."""
+    """The connections that take part, and those whose torque presses on one of them.
+
+    A pendulum hangs on its centrifugal spring: a slow turn moves no mass.
+    """
     pressing = {name for own, load in zip(relevant, c.loads, strict=True) if own and load for name in load.share_of}
     chosen = np.flatnonzero([own or name in pressing for own, name in zip(relevant, c.names, strict=True)])
-    return picked(c, chosen, rows[chosen])
+    return dataclasses.replace(c.picked(chosen, rows[chosen]), swings=())

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,14 +24,6 @@ class Part(NamedTuple):
     connections: Connections
     columns: IntArray
     elements: IntArray
-
-
-def picked(c: Connections, chosen: IntArray, weights: Array) -> Connections:
-    """Some connections, with other weights; a pendulum hangs on its centrifugal spring: a slow turn moves no mass."""
-    arrays = ("stiffness", "damping", "loss_factor", "centrifugal_stiffness", "whole_speed")
-    some: dict[str, Any] = {name: getattr(c, name)[chosen] for name in arrays}
-    some |= {name: tuple(getattr(c, name)[i] for i in chosen) for name in ("names", "laws", "loads")}
-    return dataclasses.replace(c, weights=weights, swings=(), **some)
 
 
 def grouped(rows: Array) -> IntArray:
@@ -60,7 +51,7 @@ def parts_of(c: Connections) -> tuple[Part, ...]:
 def _part(c: Connections, columns: IntArray, elements: IntArray) -> Part:
     free = columns.reshape(len(elements), -1).astype(np.int64)
     own = c.weights[np.ix_(elements[0], np.append(free[0], c.weights.shape[1] - 1))]
-    return Part(picked(c, elements[0], own), free, elements)
+    return Part(c.picked(elements[0], own), free, elements)
 
 
 def _labels(c: Connections) -> tuple[IntArray, IntArray]:
@@ -79,7 +70,7 @@ def _labels(c: Connections) -> tuple[IntArray, IntArray]:
 def _likeness(c: Connections, elements: IntArray, columns: IntArray) -> object:
     """What is the same of two parts that are alike, in the order of their connections."""
     own = c.weights[np.ix_(elements, np.append(columns, c.weights.shape[1] - 1))]
-    values = np.column_stack([c.stiffness, c.damping, c.loss_factor, c.centrifugal_stiffness, c.whole_speed])[elements]
+    values = np.column_stack([c.values, c.whole_speed])[elements]
     names = [c.names[i] for i in elements]
     loads = tuple(_load(c.loads[i], names) for i in elements)
     laws = tuple(c.laws[i] for i in elements)

@@ -101,9 +101,7 @@ def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
         laws = list(split.system.connections.laws)
         for place, own, straight in zip(split.places, rows, split.reference_stiffness, strict=True):
             laws[place] = _partly(own, float(straight), share)
-        return dataclasses.replace(
-            split.system, connections=dataclasses.replace(split.system.connections, laws=tuple(laws))
-        )
+        return split.system.with_connections(laws=tuple(laws))
 
     bent = VariedProblem(
         dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order, build
