@@ -340,7 +340,7 @@ operation: {idle: 100, speed: [100, 200], torque: [0, 500]}
 def test_an_undamped_mode_met_exactly_is_told(torsional: Run) -> None:
     """Two discs of 1 kgm² on 5000 Nm/rad vibrate at 100 rad/s: order 1 meets that at 100 rad/s, order 2 at half."""
     Path("two.yaml").write_text(TWO_DISCS, encoding="utf-8")
-    for speeds, told in (("100", "at 954.93 rpm, where"), ("50:200:50", "at 477.46 rpm and 1 more, where")):
+    for speeds, told in (("100rad/s", "at 954.93 rpm, where"), ("50:200:50rad/s", "at 477.46 rpm and 1 more, where")):
         answer = torsional("respond", "two.yaml", "--speed", speeds, "--orders", "1:2:1", "--torque", "500Nm")
         assert answer.code == 0
         assert f"an undamped mode is met {told}" in answer.err

@@ -20,7 +20,7 @@ def test_pendulums_have_a_row_beside_the_springs_with_stops() -> None:
     parts = {"rotor": Inertia(0.5), "load": Inertia(3.0), "shaft": Shaft("rotor", "load", 1e4, 20.0), "mass": pendulum}
     system = assemble(Powertrain(parts))
     run = transient(system, Excitation(("rotor",), [3.0], 100.0, [[400.0]]), 0.5, "rest")
-    tables = {table.title: table for table in run_tables(with_figures(run, system, []), "", [])}
+    tables = {table.title: table for table in run_tables(with_figures(run, [system], []), "", [])}
     ((name, low, high, stop, left, contacts),) = tables["Springs against their stops"].rows
     assert (name, stop, left) == ("mass", pytest.approx(0.04), 0.0)
     swing = run.twist.sel(element="mass.suspension").values

@@ -335,18 +335,13 @@ def test_pieces_are_the_whole(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_run_goes_on_from_its_result(seed: int) -> None:
-    """A Dataset holds the motion but not the method's own accelerations: what that costs falls as its error does."""
+    """A Dataset holds all that the next step needs: the run goes on as if it had not been cut, to the last bit."""
     system = assemble(Powertrain(machine(gentle(np.random.default_rng(seed), 3 + seed), seed)))
-
-    def cost(step: float) -> float:
-        whole = run_of(system, seed, 0.1, step=step, output=1e-3)
-        half = run_of(system, seed, 0.05, step=step, output=1e-3)
-        rest = run_of(system, seed, 0.05, step=step, output=1e-3, start=half)
-        np.testing.assert_allclose(rest.time.values, whole.time.values[50:], rtol=0, atol=1e-12)
-        return apart(rest.angle.values, whole.angle.values[50:])
-
-    coarse, fine = cost(1e-4), cost(2.5e-5)
-    assert coarse < 1e-5 and fine < 0.1 * coarse
+    whole = run_of(system, seed, 0.1, output=1e-3)
+    half = run_of(system, seed, 0.05, output=1e-3)
+    rest = run_of(system, seed, 0.05, output=1e-3, start=half)
+    np.testing.assert_allclose(rest.time.values, whole.time.values[50:], rtol=0, atol=1e-12)
+    assert (rest.angle.values == whole.angle.values[50:]).all()
 
 
 # --- energy that steps make of their own ---
