@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,10 @@ PUBLIC = [getattr(torsional, name) for name in torsional.__all__]
 FUNCTIONS = [thing for thing in PUBLIC if inspect.isfunction(thing)]
 FUNCTIONS += [branches.coexisting, branches.solutions_at, branches.without_stable]
 FUNCTIONS += [region.stretches, subharmonic.sought_region, subharmonic.within]
+GIVEN_BACK = (torsional.System, torsional.OperatingPoint, torsional.State)  # made by functions alone
+CLASSES = [
+    thing for thing in PUBLIC if inspect.isclass(thing) and dataclasses.is_dataclass(thing) and thing not in GIVEN_BACK
+]
 
 
 class Stranger:
@@ -46,6 +51,49 @@ def test_every_public_function_refuses_a_stranger(function: Any) -> None:
     assert caught.value.where == f"{function.__name__}({first})"
     assert caught.value.found == "a Stranger"
     assert caught.value.problem.endswith("is wanted")
+
+
+@pytest.mark.parametrize("kind", CLASSES, ids=lambda kind: kind.__name__)
+def test_every_public_class_refuses_a_stranger_in_any_field(kind: Any) -> None:
+    fields = dataclasses.fields(kind)
+    needed = [each.name for each in fields if each.default is each.default_factory is dataclasses.MISSING]
+    told = []
+    for name in needed or [fields[0].name]:
+        others = {other: "1" if "str" in str(kind.__annotations__.get(other, "")) else 1 for other in needed}
+        with pytest.raises(ModelError) as caught:
+            kind(**{**others, name: Stranger()})
+        assert caught.value.problem.endswith("wanted")
+        told.append(caught.value.found)
+    assert "a Stranger" in told or kind is torsional.Powertrain
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: torsional.Jenkins("50 Nm", 1.0), ["limit_torque: a finite number is wanted", "'50 Nm' (str)"]),
+        (lambda: torsional.Hinges("x"), ["stiffness: a finite number is wanted; found 'x' (str)"]),
+        (lambda: torsional.Hinges.staged([("x", 1.0)]), ["stages: pairs of a torque"]),
+        (lambda: torsional.Polynomial("x"), ["coefficients: a list, each a finite number"]),
+        (lambda: torsional.SpeedProfile.constant("x"), ["SpeedProfile.constant(speed)", "units.read"]),
+        (lambda: torsional.SpeedProfile("x", "y"), ["times: a list"]),
+        (lambda: torsional.TorqueHistory("a", "x", [1.0]), ["times: a list"]),
+        (lambda: torsional.Excitation("a", [1.0], 1.0, [[1.0]]), ["nodes", "write ['a']"]),
+        (lambda: torsional.Powertrain(5), ["Powertrain(components): a mapping from names"]),
+        (lambda: torsional.Shaft(1, "b", 3.0), ["a: a text is wanted; found 1 (int)"]),
+        (lambda: torsional.Shaft("a", "b", np.nan), ["stiffness: a finite number is wanted; found nan"]),
+        (lambda: torsional.OrderTorques(5), ["excitation: an Excitation is wanted"]),
+    ],
+)
+def test_what_classes_tell(make: Any, told: list[str]) -> None:
+    with pytest.raises(ModelError) as caught:
+        make()
+    assert [part for part in told if part not in str(caught.value)] == []
+
+
+def test_classes_take_numbers_of_every_kind() -> None:
+    assert torsional.Shaft("a", "b", np.float32(2.0)).stiffness == 2.0
+    assert torsional.FullLoad(np.array([1.0, 2.0]), [3, 4]).torques == (3, 4)
+    assert torsional.Hinges.staged([(np.inf, 1)]).stiffness == 1.0
 
 
 CASES: list[tuple[str, list[Any], dict[str, Any], list[str]]] = [

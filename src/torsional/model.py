@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.absorbers import Absorber
+from torsional.arguments import checked_fields
 from torsional.components import Component
 from torsional.engine import Engine, FullLoad
 from torsional.engine.orders import HALF_ORDERS, BoolArray
@@ -28,6 +29,7 @@ NOTABLE = 0.05
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Gear:
     """One gear: its ``ratio`` and the ``components`` that stand in the line while it is engaged."""
 
@@ -36,6 +38,7 @@ class Gear:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Operation:
     """Where the machine runs: ``idle`` and ``speed`` (from, to) [rad/s]; ``torque`` (from, to) [Nm] or None for
     zero to full load."""
@@ -46,6 +49,7 @@ class Operation:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Landmarks:
     """The user's names for the places that analyses ask for; empty where the machine has none.
 
@@ -73,6 +77,7 @@ class Landmarks:
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class Model:
     """A machine: ``components`` common to all gears, ``gears`` by name, engine, operating range, landmarks.
 

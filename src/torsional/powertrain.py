@@ -8,6 +8,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
+from torsional.arguments import checked
 from torsional.components import Component
 from torsional.errors import ModelError, nearest
 from torsional.notebook import components_table
@@ -37,6 +38,7 @@ class Powertrain:
     parts: int = 1
     reference: str = ""
 
+    @checked
     def __init__(
         self,
         components: Mapping[str, Component] | Iterable[tuple[str, Component]],

@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from torsional.arguments import checked_fields
 from torsional.errors import ModelError
 from torsional.laws import Law
 
@@ -19,6 +20,7 @@ Weights = Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
+@checked_fields
 class SpeedSwitch:
     """A second ``inertia`` [kgm²] above a mean ``speed`` [rad/s]; falling, it goes back at speed − ``hysteresis``.
 
@@ -36,6 +38,7 @@ class SpeedSwitch:
 
 
 @dataclass(frozen=True, slots=True)
+@checked_fields
 class Mass:
     """Kinetic energy ½ J (w·θ̇)² with ``inertia`` J [kgm²], or that of ``switch`` above its speed."""
 
@@ -46,6 +49,7 @@ class Mass:
 
 
 @dataclass(frozen=True, slots=True)
+@checked_fields
 class NormalLoad:
     """The load that presses two rubbing parts together, N = max(0, constant level(t) + centrifugal Ω² + Σ share |T|).
 
@@ -69,10 +73,7 @@ class NormalLoad:
     def __post_init__(self) -> None:
         shares = tuple((name, float(share)) for name, share in dict(self.shares).items())
         object.__setattr__(self, "shares", shares)
-        values = (self.constant, self.centrifugal, *(share for _, share in shares))
-        if not all(math.isfinite(value) for value in values):
-            raise ModelError("a normal load is finite", where="load", found=repr(values))
-        if not any(values):
+        if not any((self.constant, self.centrifugal, *(share for _, share in shares))):
             raise ModelError("the normal load is nought", where="load", remedy="give constant, centrifugal or shares")
 
     @property
@@ -118,6 +119,7 @@ class Swing:
 
 
 @dataclass(frozen=True, slots=True)
+@checked_fields
 class Connection:
     """Torque k (1 + iη) w·θ + c w·θ̇ + Ω² s w·θ + law(w·θ, w·θ̇) acting along w.
 
@@ -156,6 +158,7 @@ class Connection:
 
 
 @dataclass(frozen=True, slots=True)
+@checked_fields
 class Constraint:
     """The rigid kinematic condition w·θ = 0."""
 

@@ -36,5 +36,5 @@ def test_lists_of_the_wrong_length_are_refused() -> None:
 
 
 def test_a_coupling_with_a_number_for_a_law_is_refused() -> None:
-    with pytest.raises(ModelError, match=r"law: a force law is wanted; found 13000.0; a plain spring is Hinges"):
+    with pytest.raises(ModelError, match=r"law: a Law is wanted; found 13000.0; a plain spring is Hinges"):
         Coupling("a", "b", 13e3)  # type: ignore[arg-type]

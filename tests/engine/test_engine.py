@@ -223,7 +223,7 @@ def test_refused_calls(truck: Engine, arguments: tuple, where: str, told: str) -
         (lambda: ChenFlynn(constant=-1.0), "friction.constant"),
         (lambda: Excitation(("a", "a"), [3.0], 1.0, np.ones((2, 1))), "nodes"),
         (lambda: Excitation(("a",), [3.0], 1.0, np.ones((2, 1))), "torque"),
-        (lambda: Excitation(("a",), [3.0], 1.0, np.full((1, 1), np.nan)), "excitation"),
+        (lambda: Excitation(("a",), [3.0], 1.0, np.full((1, 1), np.nan)), "torque"),
         (lambda: Excitation.unit("crank", [3.0], 1.0).at("crnk"), "crnk"),
         (lambda: Excitation.unit("crank", [3.0], 1.0).selected([6]), "orders"),
     ],

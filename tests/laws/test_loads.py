@@ -130,7 +130,7 @@ def test_a_brake_holds_nothing_and_linear_analyses_leave_it_out() -> None:
     ("make", "said"),
     [
         (lambda: NormalLoad(), "the normal load is nought"),
-        (lambda: NormalLoad(float("nan")), "a normal load is finite"),
+        (lambda: NormalLoad(float("nan")), "constant: a finite number is wanted; found nan"),
         (lambda: Coupling("a", "b", Hinges(1.0, (1.0,), (1.0,), (1.0,)), load=NormalLoad(1.0)), "found Hinges"),
         (lambda: Coupling("a", "b", Hinges(1.0), load=NormalLoad(1.0)), "found no law"),
         (lambda: Coupling("a", "b", Coulomb(1.0, 1.0), load=3.0), "a NormalLoad is wanted"),  # type: ignore[arg-type]

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from torsional.arguments import checked_fields
 from torsional.components import Component, GearPair
 from torsional.errors import ModelError
 from torsional.stamps import Stamp
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Absorber:
     """Named ``components`` between an ``input`` node (crankshaft side) and an ``output`` node (clutch side).
 

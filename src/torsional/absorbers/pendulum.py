@@ -9,7 +9,7 @@ from typing import Literal
 
 from torsional import checks
 from torsional.absorbers.base import Absorber
-from torsional.arguments import checked
+from torsional.arguments import checked, checked_fields
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Law
 from torsional.stamps import Connection, Mass, Stamp, Swing
@@ -18,6 +18,7 @@ Path = Literal["circular", "cycloid", "epicycloid", "tautochrone"]
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Rollers:
     """Rollers of a bifilar pendulum: ``mass`` [kg] and spin ``inertia`` [kgm²] of all, ``radius`` [m], ``distance``
     [m] of their centres from the axis.  A roller's centre makes half the pendulum's way and turns by −s/(2r).
@@ -37,6 +38,7 @@ class Rollers:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class CentrifugalPendulum:
     """Pendulums of ``mass`` m [kg] in all, their centre at ``distance`` c [m] from the axis, tuned to ``order`` n.
 

@@ -13,13 +13,14 @@ from torsional.absorbers.dual_mass import dual_mass_flywheel
 from torsional.absorbers.spring_curves import Rising, both_ways, pressed, side_by_side
 from torsional.absorbers.spring_parts import SAME, GuideFriction
 from torsional.absorbers.spring_row import Pair, Row, guided, loads, sprung
-from torsional.arguments import checked
+from torsional.arguments import checked, checked_fields
 from torsional.components import Component, Coupling, Inertia
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges
 
 
 @dataclass(frozen=True, kw_only=True)
+@checked_fields
 class SpringFlywheel(ABC):
     """What dual mass flywheels with straight and with arc springs share; SI and radians.
 

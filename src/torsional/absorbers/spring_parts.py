@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from torsional import checks
+from torsional.arguments import checked_fields
 from torsional.errors import ModelError
 from torsional.laws import LuGre
 
@@ -13,6 +14,7 @@ SAME = 1e-12
 
 
 @dataclass(frozen=True)
+@checked_fields
 class CoilSpring:
     """A coil spring: ``rate`` [N/m], ``free_length`` and ``solid_length`` (coils touching) [m], ``mass`` [kg].
 
@@ -45,6 +47,7 @@ class CoilSpring:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class GuideFriction:
     """Friction of shoes or coils on their guide, by LuGre's law per newton of the load that presses them.
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from torsional import checks
-from torsional.errors import ModelError
+from torsional.arguments import checked_fields
 from torsional.laws import Law
 from torsional.stamps import Connection, NormalLoad
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Coupling:
     """A force ``law`` between nodes ``a`` and ``b`` on φ = θ_b − θ_a, with viscous ``damping`` c [Nms/rad] beside it.
 
@@ -34,12 +35,7 @@ class Coupling:
 
     def __post_init__(self) -> None:
         checks.distinct(self.a, self.b)
-        if not isinstance(self.law, Law):
-            remedy = "a plain spring is Hinges(stiffness); stages are Hinges.staged([(up to, stiffness), ...])"
-            raise ModelError("a force law is wanted", where="law", found=repr(self.law), remedy=remedy)
         checks.not_negative(self.damping, "damping", "damping")
-        if self.load is not None and not isinstance(self.load, NormalLoad):
-            raise ModelError("a NormalLoad is wanted", where="load", found=repr(self.load))
         for _ in self.stamps("load"):  # a load that the law cannot take is refused now
             pass
 

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from torsional import checks
+from torsional.arguments import checked_fields
 from torsional.errors import ModelError
 from torsional.stamps import Constraint, Mass, SpeedSwitch, Stamp
 
 
 @dataclass(frozen=True)
+@checked_fields
 class GearPair:
     """Two meshing gears without play: θ_a = i θ_b with ``ratio`` i = speed of ``a`` over speed of ``b`` (≠ 0).
 
@@ -34,6 +36,7 @@ class GearPair:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class PlanetaryGear:
     """An epicyclic set by ``standing_ratio`` i0: θ_sun − i0 θ_ring − (1 − i0) θ_carrier = 0 (Willis, 1841).
 
@@ -69,6 +72,7 @@ class PlanetaryGear:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Superposition:
     """A gear train by its ratio alone: θ_node = (1 − r) θ_a + r θ_b (the weights of every ideal planetary sum to 1).
 
@@ -95,6 +99,7 @@ class Superposition:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class PlanetSpin:
     """The spin inertia of planet wheels that turn with (1 − g) θ_a + g θ_b; ``inertia`` [kgm²] of all planets.
 

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from torsional import checks
+from torsional.arguments import checked_fields
 from torsional.stamps import Mass
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Inertia:
     """A rigid disc of ``inertia`` J [kgm²] on a ``node`` (default: a node of the component's own name).
 
@@ -31,6 +33,7 @@ class Inertia:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Vehicle:
     """The translating ``mass`` [kg] seen at the wheel: J = m r² with ``rolling_radius`` r [m].
 

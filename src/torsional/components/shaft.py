@@ -8,10 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from torsional import checks
+from torsional.arguments import checked_fields
 from torsional.stamps import Connection, Mass, Stamp
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Shaft:
     """A torsion spring from node ``a`` to node ``b``: torque k (1 + iη)(θ_b − θ_a) + c (θ̇_b − θ̇_a).
 
@@ -49,6 +51,7 @@ class Tyre(Shaft):
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Damper:
     """A viscous damper from node ``a`` to node ``b`` (default: ground, an absolute damper), ``damping`` c [Nms/rad].
 
@@ -72,6 +75,7 @@ class Damper:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class DistributedShaft:
     """A uniform shaft from ``a`` to ``b`` in ``elements`` finite elements with consistent mass.
 

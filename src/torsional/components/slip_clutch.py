@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from torsional import checks
+from torsional.arguments import checked, checked_fields
 from torsional.errors import ModelError
 from torsional.laws import LuGre
 from torsional.stamps import Connection, NormalLoad
 
 
 @dataclass(frozen=True)
+@checked_fields
 class SlipClutch:
     """Linings between ``a`` and ``b`` that carry μ(v) N z R: force ``clamp_force`` N, ``surfaces`` z, ``radius`` R.
 
@@ -53,6 +55,7 @@ class SlipClutch:
             raise ModelError("sticking carries no less than sliding", where="breakaway", found=f"{self.breakaway:g}")
 
     @classmethod
+    @checked
     def of_capacity(cls, a: str, b: str, capacity: float, **values: float | str) -> SlipClutch:
         """Linings of a known ``capacity`` [Nm], sliding and fully pressed, however it is made.
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import number, positive, within
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
@@ -19,6 +20,7 @@ BOOST = ((0.0, 1.05e5), (5e5, 1.3e5), (10e5, 1.8e5), (15e5, 2.35e5), (20e5, 2.9e
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Wiebe:
     """Burnt fraction x_b(θ) = 1 − exp(−a((θ − start)/duration)^(shape + 1)), 0 before the start.
 
@@ -48,6 +50,7 @@ class Wiebe:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class LoadTable:
     """A value over the brake mean effective pressure of the firing cylinders, linear between points, held outside.
 
@@ -75,6 +78,7 @@ class LoadTable:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class CombustionCycle:
     """A turbocharged four-stroke diesel cycle in one zone; angles [rad] from firing top dead centre.
 

@@ -6,11 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from numbers import Integral
 
 import numpy as np
 
-from torsional.checks import number
+from torsional.arguments import checked_fields
 from torsional.engine.orders import CYCLE, FloatArray
 from torsional.errors import ModelError
 
@@ -19,6 +18,7 @@ ANGLE_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
+@checked_fields
 class CrankLayout:
     """Firing order, firing intervals and throws of 1 to 16 cylinders, in line or in a vee.
 
@@ -112,8 +112,7 @@ class CrankLayout:
         count = len(self.firing_order)
         if not 1 <= count <= 16:
             raise ModelError("an engine has 1 to 16 cylinders", where="firing_order", found=str(count))
-        whole = all(isinstance(number, Integral) for number in self.firing_order)
-        if not whole or sorted(self.firing_order) != list(range(1, count + 1)):
+        if sorted(self.firing_order) != list(range(1, count + 1)):
             raise ModelError(
                 "the firing order must name every cylinder once",
                 where="firing_order",
@@ -127,8 +126,6 @@ class CrankLayout:
     def _check_intervals(self) -> None:
         if not self.firing_intervals:
             return
-        for index, interval in enumerate(self.firing_intervals):
-            number(interval, f"firing_intervals.{index}")
         if len(self.firing_intervals) != self.cylinders or min(self.firing_intervals) < 0:
             found = ", ".join(f"{math.degrees(step):g}°" for step in self.firing_intervals)
             allowed = f"{self.cylinders} angles, none negative"
@@ -153,7 +150,7 @@ class CrankLayout:
                 raise ModelError(problem, where="throws", found=f"banks {seated} on throw {throw}")
 
     def _check_vee(self) -> None:
-        apart = number(self.bank_angle, "bank_angle") + number(self.pin_split, "pin_split")
+        apart = self.bank_angle + self.pin_split
         lags = {}
         for throw in range(1, self.throw_count + 1):
             seated = [index for index, place in enumerate(self.throws) if place == throw]

@@ -8,12 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import positive, within
 from torsional.engine.orders import FloatArray, crank_angle_grid
 from torsional.engine.slider_crank import SliderCrank
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Cylinder:
     """Bore [m], compression ratio [-] and the slider-crank below.
 

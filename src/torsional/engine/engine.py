@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive, within
 from torsional.engine.checks import check_deactivated, check_heat_spread
 from torsional.engine.combustion import CombustionCycle
@@ -42,6 +43,7 @@ FASTEST_PISTON = 30.0
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Engine:
     """A four-stroke engine of 1 to 16 cylinders; SI units throughout.
 

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked, checked_fields
 from torsional.engine.orders import ComplexArray, FloatArray, checked_orders
 from torsional.errors import ModelError, nearest
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class Excitation:
     """Complex 0-peak torque harmonics at nodes, T(t) = Re Σ_n T_n exp(i n θ), θ = Ω t the engine's crank angle.
 
@@ -31,7 +33,7 @@ class Excitation:
     torque: ComplexArray
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "nodes", (self.nodes,) if isinstance(self.nodes, str) else tuple(self.nodes))
+        object.__setattr__(self, "nodes", tuple(self.nodes))
         object.__setattr__(self, "orders", checked_orders(self.orders))
         object.__setattr__(self, "speed", np.asarray(self.speed, dtype=float))
         object.__setattr__(self, "torque", np.asarray(self.torque, dtype=complex))
@@ -43,10 +45,9 @@ class Excitation:
             )
         if len(set(self.nodes)) < len(self.nodes):
             raise ModelError("a node is named twice", where="nodes", found=", ".join(self.nodes))
-        if not (np.isfinite(self.torque).all() and np.isfinite(self.speed).all()):
-            raise ModelError("speed and torque must be finite", where="excitation")
 
     @classmethod
+    @checked
     def unit(cls, node: str, orders: ArrayLike, speed: ArrayLike) -> Excitation:
         """One newton metre of every order at one node: the responses to it are receptances."""
         at, n = np.asarray(speed, dtype=float), checked_orders(orders)

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import within
 from torsional.engine.orders import FloatArray
 
 
 @dataclass(frozen=True)
+@checked_fields
 class ChenFlynn:
     """Friction mean effective pressure that grows with peak pressure and piston speed.
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.engine.orders import BoolArray, FloatArray
 from torsional.errors import ModelError
@@ -15,6 +16,7 @@ from torsional.units import show_speed
 
 
 @dataclass(frozen=True)
+@checked_fields
 class FullLoad:
     """Full-load torque [Nm] over engine speed [rad/s], linear between points, refused outside.
 

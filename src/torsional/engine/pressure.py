@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional import checks
+from torsional.arguments import checked, checked_fields
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
 from torsional.engine.orders import CYCLE, SAMPLES, FloatArray, crank_angle_grid, periodic_spline
@@ -21,6 +22,7 @@ ANCHOR = np.radians((-90.0, -40.0))
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class PressureTrace:
     """Absolute cylinder pressure [Pa] over one cycle, shape (1 or cylinders, 1440), every half degree from 0 to 719.5°.
 
@@ -52,6 +54,7 @@ class PressureTrace:
         object.__setattr__(self, "pressure", values)
 
     @classmethod
+    @checked
     def from_csv(
         cls, source: str | Path, *, speed: float | None = None, offset: float = 0.0, own_angle: bool = False
     ) -> PressureTrace:
@@ -78,6 +81,7 @@ class PressureTrace:
             raise error.located(file=table.name) from None
 
     @classmethod
+    @checked
     def sampled(
         cls, crank_angle: ArrayLike, pressure: ArrayLike, *, offset: float = 0.0, own_angle: bool = False
     ) -> PressureTrace:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import number, positive
 from torsional.engine.orders import (
     ComplexArray,
@@ -22,6 +23,7 @@ from torsional.numerics.crank_kinematics import piston_position, piston_ratios
 
 
 @dataclass(frozen=True)
+@checked_fields
 class SliderCrank:
     """A crank of radius r, a rod of length l and a pin whose line passes the crank's axis at the distance e.
 

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numba
 import numpy as np
 
-from torsional.arguments import checked
+from torsional.arguments import checked, checked_fields
 from torsional.checks import not_negative, positive
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
@@ -37,6 +37,7 @@ def contacts_torque(parameters: Array, angle: float, rate: float, memory: float,
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Contacts(Law):
     """One-sided springs, each with a damper: f(φ, φ̇) = Σ_i s_i max(0, k_i (s_i (φ − g_i) + τ_i s_i φ̇)).
 
@@ -75,6 +76,7 @@ class Contacts(Law):
             raise ModelError("there is no such damper", where="damper", found=self.damper, allowed=", ".join(DAMPERS))
 
     @classmethod
+    @checked
     def lash(cls, play: float, stiffness: float, contact_time: float = 0.0, *, damper: str = "held") -> Contacts:
         """Free play of a whole angle ``play`` [rad], half to each side, between flanks of one ``stiffness`` [Nm/rad].
 
@@ -86,6 +88,7 @@ class Contacts(Law):
         return cls((half, -half), (1.0, -1.0), (stiffness,) * 2, (contact_time,) * 2, damper=damper)
 
     @classmethod
+    @checked
     def between(
         cls, low: float, high: float, stiffness: float, contact_time: float = 0.0, *, damper: str = "held"
     ) -> Contacts:

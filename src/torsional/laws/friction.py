@@ -12,6 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told, plain
 from torsional.numerics.arrays import Array
@@ -26,6 +27,7 @@ def coulomb_torque(parameters: Array, angle: float, rate: float, memory: float, 
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Coulomb(Law):
     """Dry friction without memory, f(u) = F u / sqrt(u² + u0²) of the relative rate u.
 
@@ -71,6 +73,7 @@ def jenkins_torque(parameters: Array, angle: float, rate: float, memory: float, 
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Jenkins(Law):
     """A spring in series with a dry slider: a friction washer that sticks elastically, then slips.
 

@@ -11,11 +11,13 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked, checked_fields
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import rising_points
 from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array, IntArray
+from torsional.units import quoted
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -32,6 +34,7 @@ def hinges_torque(parameters: Array, angle: float, rate: float, memory: float, s
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Hinges(Law):
     """Every piecewise-linear law: stages, lash, clearances, stops, as a sum of hinges.
 
@@ -100,6 +103,7 @@ class Hinges(Law):
         return cls(base, gaps, signs, changes, tuple(sorted(stops)))
 
     @classmethod
+    @checked
     def through(cls, points: Sequence[tuple[float, float]]) -> Hinges:
         """Straight lines through points (angle [rad], torque [Nm]) with rising angles; the outer lines go on.
 
@@ -208,10 +212,14 @@ class Hinges(Law):
 
 def _checked_stages(stages: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]:
     """The stages, refused unless torques rise and stiffnesses are positive."""
-    if not stages:
+    try:
+        listed = [(float(torque), float(stiffness)) for torque, stiffness in stages]
+    except (TypeError, ValueError):
+        raise ModelError("pairs of a torque and a stiffness are wanted", where="stages", found=quoted(stages)) from None
+    if not listed:
         raise ModelError("at least one stage is needed", where="stages")
     carried = 0.0
-    for number, (torque, stiffness) in enumerate(stages):
+    for number, (torque, stiffness) in enumerate(listed):
         if not stiffness > 0 or not np.isfinite(stiffness):
             raise ModelError(
                 "a stage needs a positive stiffness", where=f"stages.{number}.stiffness", found=f"{stiffness:g} Nm/rad"

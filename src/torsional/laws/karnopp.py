@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told
 from torsional.laws.checks import breakaway_above_sliding
@@ -59,6 +60,7 @@ def karnopp_torque(parameters: Array, angle: float, rate: float, memory: float, 
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Karnopp(Law):
     """Friction with a band of sticking: a stiff bristle that holds up to g(u), and slides at g(u).
 

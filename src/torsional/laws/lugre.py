@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told
 from torsional.laws.checks import breakaway_above_sliding
@@ -78,6 +79,7 @@ def lugre_torque(parameters: Array, angle: float, rate: float, memory: float, st
 
 
 @dataclass(frozen=True)
+@checked_fields
 class LuGre(Law):
     """Friction of bristles: ż = u − σ0 |u| z/g(u), f = N (σ0 z + σ1 ż + σ2 u) + c_v u.
 

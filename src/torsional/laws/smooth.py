@@ -11,6 +11,7 @@ from typing import ClassVar
 import numba
 import numpy as np
 
+from torsional.arguments import checked_fields
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import rising_points
@@ -28,6 +29,7 @@ def polynomial_torque(parameters: Array, angle: float, rate: float, memory: floa
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Polynomial(Law):
     """f(φ) = c_1 φ + c_2 φ² + c_3 φ³ + … with ``coefficients`` c_n [Nm/rad^n]; (k, 0, k3) is Duffing's spring.
 
@@ -76,6 +78,7 @@ def table_torque(parameters: Array, angle: float, rate: float, memory: float, st
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Table(Law):
     """A smooth rising curve through ``points`` (angle [rad], torque [Nm]), with one slope at each point.
 

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numba
 import numpy as np
 
+from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
@@ -33,6 +34,7 @@ def stribeck_torque(parameters: Array, angle: float, rate: float, memory: float,
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Stribeck(Law):
     """Friction without memory, f(u) = N g(u) u/√(u² + u0²) + c_v u with g(u) = g_c + (g_s − g_c) exp(−(u/u_s)²).
 

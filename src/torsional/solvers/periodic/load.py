@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
@@ -16,6 +17,7 @@ NEGLIGIBLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class Load:
     """Complex 0-peak torque harmonics [Nm] of ``orders`` at ``nodes``, order 0 the mean, over a parameter.
 

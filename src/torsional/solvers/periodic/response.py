@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from torsional.arguments import checked
+from torsional.arguments import checked, checked_fields
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
@@ -42,6 +42,7 @@ _LOADS: dict[str, Callable[[Excitation], Load]] = {
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Variation:
     """A quantity of the system to be continued: its ``name``, its ``unit`` and how to ``build`` the system for a value.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from torsional.arguments import checked_fields
 from torsional.engine import CombustionCycle, Engine
 from torsional.engine.excitation import checked_nodes
 from torsional.engine.orders import CYCLE, crank_angle_grid
@@ -31,6 +32,7 @@ NOTHING = Level(np.zeros(1), np.zeros(1))
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class CylinderTorques:
     """Cylinders of an ``engine`` on ``nodes`` (one a throw, or one for all) as they burn at a mean ``speed`` [rad/s]
     and brake ``torque`` [Nm].

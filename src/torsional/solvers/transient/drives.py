@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked_fields
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
@@ -20,6 +21,7 @@ BEYOND = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
+@checked_fields
 class OrderTorques:
     """The orders of an ``excitation`` over the crank angle, its operating points over speed joined by straight lines.
 
@@ -81,6 +83,7 @@ def _mean(source: Source) -> tuple[Array, Level]:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class TorqueHistory:
     """A torque [Nm] at a ``node`` over ``times`` [s]: straight lines between them, constant before and after.
 
@@ -107,6 +110,7 @@ class TorqueHistory:
 
 
 @dataclass(frozen=True)
+@checked_fields
 class Governor:
     """A speed governor T = clip(k_p e + ∫ k_i e dt, low, high), e = wanted − speed of the node ``sense`` [rad/s].
 

@@ -8,12 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from torsional.arguments import checked, checked_fields
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.solvers.transient.profiles import Level, level_of
 
 
 @dataclass(frozen=True)
+@checked_fields
 class SpeedProfile:
     """Mean engine speed [rad/s], linear between ``times`` [s] and constant beyond.
 
@@ -34,11 +36,13 @@ class SpeedProfile:
         level_of(self.times, self.speeds, "speed")
 
     @classmethod
+    @checked
     def constant(cls, speed: float) -> SpeedProfile:
         """One speed [rad/s]."""
         return cls((0.0,), (float(speed),))
 
     @classmethod
+    @checked
     def ramp(cls, start: float, end: float, duration: float, begin: float = 0.0) -> SpeedProfile:
         """From one speed [rad/s] to another within ``duration`` [s], beginning at ``begin`` [s]."""
         if not duration > 0:
