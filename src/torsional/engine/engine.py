@@ -212,8 +212,6 @@ class Engine:
         gas = (points.coefficients @ self._balance.work)[:, member] @ seats
         return MeanTorque(gas.reshape(shape), (points.friction[:, member] @ seats).reshape(shape))
 
-    # torque
-
     def harmonics(self, speed: ArrayLike, mean_torque: ArrayLike, orders: ArrayLike) -> ComplexArray:
         """Complex 0-peak torque harmonics of gas and reciprocating mass by throw [Nm], shape S + (throws, orders).
 
