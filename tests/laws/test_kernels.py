@@ -39,6 +39,7 @@ LAWS: dict[str, Law] = {
     "hinges": Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], lash=0.02, stop_stiffness=1e6),
     "contacts": Contacts((0.05, -0.1), (1.0, -1.0), (2e4, 3e4), (0.0, 0.0)),
     "cut": Contacts.lash(0.02, 2e4, 1e-3, damper="cut"),
+    "limited": Contacts.lash(0.02, 2e4, 1e-3, damper="limited"),
     "polynomial": Polynomial((2e3, -500.0, 4e4)),
     "table": Table(((-0.2, -300.0), (-0.1, -50.0), (0.0, 0.0), (0.05, 0.0), (0.1, 80.0), (0.3, 1000.0))),
     "coulomb": Coulomb(50.0, regularisation_rate=0.1),
@@ -58,6 +59,7 @@ LAWS: dict[str, Law] = {
 }
 KINKS = {
     "cut": np.array([0.01, -0.01]),
+    "limited": np.array([0.01, -0.01]),
     "contacts": np.array([0.05, -0.1]),
     "hinges": np.array(LAWS["hinges"].gaps),  # type: ignore[attr-defined]
     "table": np.array([x for x, _ in LAWS["table"].points]),  # type: ignore[attr-defined]

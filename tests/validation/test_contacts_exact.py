@@ -13,13 +13,16 @@ from tests.numerics.stepping_arrays import Connection, equations
 from tests.validation import dmf_lcp
 
 from torsional.errors import ModelError
-from torsional.laws import Law, Told, plain
+from torsional.laws import Contacts, Law, Told, plain
+from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.complementarity import violation
 from torsional.numerics.complementarity_step import OneSided, Step, step_problem
 from torsional.numerics.exact_contacts import ExactContacts
 from torsional.numerics.explicit_march import explicit_march
 from torsional.numerics.piecewise_basis import StageBases
 from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.numerics.stepping import begin, march
+from torsional.numerics.stepping_plan import prepare
 
 Array = np.ndarray
 
@@ -138,6 +141,22 @@ def test_elasto_backlash_of_the_modelica_standard_library() -> None:
     system = equations([5.0], [Connection([1.0], law=ElastoBacklash())])
     way = explicit_march(system, [0.0, 1.0], [0.5 * np.pi], [0.0], tolerance=1e-11)
     np.testing.assert_allclose([way.angles[-1, 0], way.rates[-1, 0]], [-0.155581, -7.022937], atol=5e-7)
+
+
+def test_a_limited_damper_is_that_of_the_modelica_standard_library() -> None:
+    """The same example by the package's own law, explicitly and by implicit steps; torques by their formula."""
+    law = Contacts.lash(np.pi / 4.0, 20e3, contact_time=50.0 / 20e3, damper="limited")
+    system = equations([5.0], [Connection([1.0], law=law)])
+    way = explicit_march(system, [0.0, 1.0], [0.5 * np.pi], [0.0], tolerance=1e-11)
+    np.testing.assert_allclose([way.angles[-1, 0], way.rates[-1, 0]], [-0.155581, -7.022937], atol=5e-7)
+    plan = prepare(system)
+    stepped = march(
+        plan, AlphaMethod.chung_hulbert(0.8), 1e-5, 100_000, begin(plan, [0.5 * np.pi], [0.0]), stride=100_000
+    )
+    np.testing.assert_allclose([stepped.records.q[-1, 0], stepped.records.v[-1, 0]], [-0.155581, -7.022937], atol=2e-3)
+    x = np.pi / 8.0 + 0.01
+    found = law.torque([x, x, x, -x, 0.1], [1.0, 9.0, -9.0, -1.0, 50.0])
+    np.testing.assert_allclose(found, [250.0, 400.0, 0.0, -250.0, 0.0], atol=1e-9)
 
 
 def test_backlash_with_a_continuous_force_is_another_motion() -> None:

@@ -158,7 +158,7 @@ def hand_over(answer: Answer, request: Request, status: str) -> None:
 
 def warn_refined(run: xr.Dataset) -> None:
     """Say what the steps did to the run, and where an engine that should run on was stalled."""
-    for told in ("refined", "damped", "energy_error", "unresolved", "restless", "unsynchronised"):
+    for told in ("refined", "damped", "unguarded", "energy_error", "unresolved", "restless", "unsynchronised"):
         if told in run.attrs:
             complain(str(run.attrs[told]), kind="warning")
     if run.attrs.get("scenario") in RUNNING:

@@ -18,18 +18,22 @@ from torsional.laws.base import Law, Told, plain
 from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array
 
-DAMPERS = ("held", "cut")
+DAMPERS = ("held", "cut", "limited")
+"""The numbers 0, 1, 2 of ``damper`` in the parameters."""
 
 
 @numba.njit(cache=True, error_model="numpy")
 def contacts_torque(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
-    """f(φ, φ̇) = Σ s max(0, k (s (φ − g) + τ s φ̇)); parameters are 1 where cut, else 0, then rows of (g, s, k, τ)."""
+    """f(φ, φ̇) = Σ s max(0, k (s (φ − g) + τ s φ̇)); parameters are the damper's number, then rows of (g, s, k, τ)."""
     torque, tangent, drag = 0.0, 0.0, 0.0
     for i in range(1, parameters.size, 4):
         side, stiffness, time = parameters[i + 1], parameters[i + 2], parameters[i + 3]
         depth = side * (angle - parameters[i])
         pressed = depth + time * side * rate
-        if (depth if parameters[0] > 0.0 else pressed) > 0.0:
+        if parameters[0] == 2.0 and pressed > 2.0 * depth > 0.0:
+            torque += 2.0 * side * stiffness * depth
+            tangent += 2.0 * stiffness
+        elif (depth if parameters[0] == 1.0 else pressed) > 0.0 and (depth > 0.0 or parameters[0] < 2.0):
             torque += side * stiffness * pressed
             tangent += stiffness
             drag += stiffness * time
@@ -46,8 +50,10 @@ class Contacts(Law):
     is continuous: the damper begins to press at the distance τ φ̇ before the gap is used up.  With ``damper`` "cut" the
     damper acts only beyond the gap, f_i = s_i k_i (s_i (φ − g_i) + τ_i s_i φ̇) there and nothing elsewhere: the torque
     then jumps at both ends of a contact, pulls before it opens, and a time step loses its order.  Both leave a mass
-    that meets a free contact with the same speed, see `contact_time`.  Raises ModelError for values that are not
-    finite, k ≤ 0, τ < 0, sides other than ±1.
+    that meets a free contact with the same speed, see `contact_time`.  With "limited" the damper gives no more than the
+    spring, f_i = s_i max(0, min(2 k_i x, k_i (x + τ_i ẋ))) at the depth x = s_i (φ − g_i) > 0, as ElastoBacklash of the
+    Modelica Standard Library has it: continuous, it never pulls, and takes less.  Raises ModelError for values that are
+    not finite, k ≤ 0, τ < 0, sides other than ±1.
 
     >>> law = Contacts.lash(0.02, 1e5, contact_time=1e-4)
     >>> law.torque([0.0, 0.011, -0.011], [3.0, 0.0, -50.0]).round(6).tolist()
@@ -104,9 +110,9 @@ class Contacts(Law):
 
     @property
     def parameters(self) -> Array:
-        """1 where cut, else 0, then (gap, side, stiffness, contact time) of every contact."""
+        """The damper's number, then (gap, side, stiffness, contact time) of every contact."""
         rows = np.array([self.gaps, self.sides, self.stiffnesses, self.contact_times], dtype=float)
-        return np.concatenate([[float(self.damper == "cut")], rows.T.ravel()])
+        return np.concatenate([[float(DAMPERS.index(self.damper))], rows.T.ravel()])
 
     def hinges(self) -> HingeRows | None:
         """One hinge a contact, with its contact time; None where the damper is cut, since the torque then jumps."""

@@ -126,3 +126,17 @@ def test_bristles_that_bend_within_a_step_take_no_energy_at_the_start(stiffness:
     start = State.at_rest(line).moved(0.0, [1.0])
     ends = [transient(line, (), 0.5, start, speed=0.0, step=h).energy.values[-1, :2].sum() for h in (1e-3, 1e-5)]
     assert ends[0] == pytest.approx(ends[1], rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("damper", "step", "said"), [("cut", 1e-4, True), ("limited", 1e-4, True), ("cut", 1e-6, False)]
+)
+def test_contacts_that_no_step_can_guard_are_told(damper: str, step: float, said: bool) -> None:
+    """ω = 1e4/s: h ω = 1 at 0.1 ms, 0.01 at 1 µs."""
+    stop = Contacts.between(-0.1, 0.1, 1e8, 1e-6, damper=damper)
+    line = {"disc": Inertia(1.0), "stop": Coupling("ground", "disc", stop)}
+    run = transient(
+        assemble(Powertrain(line)), TorqueHistory("disc", (0.0,), (1.0,)), 0.002, "rest", speed=0.0, step=step
+    )
+    assert ("unguarded" in run.attrs) == said
+    assert not said or "stop" in run.attrs["unguarded"]

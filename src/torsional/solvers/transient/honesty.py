@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from torsional.laws import Contacts
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Entry
 from torsional.numerics.stepping_plan import CONTACT_TIME, PACE
@@ -34,7 +35,7 @@ def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str
         return {}
     said = _unresolved(problem, accuracy.step) | _restless(problem, accuracy.step)
     names = problem.system.connections.names
-    said |= _guarded(problem, told, accuracy.step)
+    said |= _guarded(problem, told, accuracy.step) | _unguarded(problem, accuracy.step)
     share = method_share(told)
     if abs(share) > TOLD:
         did = "made" if share > 0 else "took away"
@@ -65,6 +66,20 @@ def _guarded(problem: Problem, told: Marched, step: float) -> dict[str, str]:
     words = f"{which}, so that their contacts are given a damper; {took}; a smaller step has none"
     felt = whole > TOLD or nearby[worst] > FELT
     return {"guarded": words} | ({"damped": words} if felt else {})
+
+
+def _unguarded(problem: Problem, step: float) -> dict[str, str]:
+    """Contacts with a damper of their own kind, which no step can guard, that are stiffer than it can follow."""
+    c, M = problem.system.connections, problem.system.M
+    pressed = {i: law for i, law in enumerate(c.laws) if isinstance(law, Contacts) and law.damper != "held"}
+    stiff = {
+        i: max(law.stiffnesses) * (c.weights[i] @ np.linalg.lstsq(M, c.weights[i])[0]) for i, law in pressed.items()
+    }
+    names = [c.names[i] for i, square in stiff.items() if step * np.sqrt(square) > STIFF]
+    if not names:
+        return {}
+    which = f"the contacts of {', '.join(names[:_MOST])} are stiffer than the step of {step:.3g} s can follow"
+    return {"unguarded": f"{which}, and their damper is of a kind that no step can guard; take a smaller step"}
 
 
 def _beside(problem: Problem, through: Array) -> Array:
