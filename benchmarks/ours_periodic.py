@@ -66,11 +66,11 @@ def response(stability: bool) -> Callable[[], object]:
 
 def branch(stability: bool) -> Callable[[], object]:
     """From the assembled line to the branch with its bifurcations located, without a dataset."""
-    from torsional.solvers.periodic.response import explored
+    from torsional.solvers.periodic.response import Exploration, explorer_of
 
-    return _afresh(
-        lambda line, load: explored(line, load, SPAN, highest_order=HIGHEST, depth=0, stability=stability).explored()[0]
-    )
+    asked = Exploration(highest_order=HIGHEST, depth=0, stability=stability)
+
+    return _afresh(lambda line, load: explorer_of(line, load, SPAN, asked).explored()[0])
 
 
 def told_of_response(found) -> dict:

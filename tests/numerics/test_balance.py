@@ -16,7 +16,7 @@ from torsional.laws import Coulomb, Jenkins, Law, LuGre, Polynomial, Table
 from torsional.numerics.balance import corrected_at
 from torsional.powertrain import Powertrain
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import Variation, explored
+from torsional.solvers.periodic.response import Exploration, Variation, explorer_of
 from torsional.system import System, assemble
 
 LASH = Stages((-1.0, 1.0), (1.0, 0.0, 1.0))
@@ -46,7 +46,7 @@ EXCITED = Excitation(("front", "primary"), [0.0, 1.5, 3.0], 1.0, [[100.0, 60j, 3
 def problem(system: System, order: float = 1.5, **changed: object) -> HarmonicProblem:
     given: dict[str, object] = {"hold": "end", "highest_order": 9.0} | changed
     span = given.pop("span", (50.0, 150.0))
-    return explored(system, EXCITED, span, **given).problem(order)  # type: ignore[arg-type]
+    return explorer_of(system, EXCITED, span, Exploration(**given)).problem(order)  # type: ignore[arg-type]
 
 
 def somewhere(of: HarmonicProblem, value: float, seed: int = 0) -> np.ndarray:
@@ -119,7 +119,7 @@ def test_derivatives_of_laws_that_remember(law: Law) -> None:
         }
     )
     load = Excitation(("primary",), [0.0, 3.0], 1.0, [[100.0, 700.0]])
-    of = explored(assemble(both), load, (50.0, 150.0), hold="end", highest_order=9.0).problem(3.0)
+    of = explorer_of(assemble(both), load, (50.0, 150.0), Exploration(hold="end", highest_order=9.0)).problem(3.0)
     assert_derivatives(of, somewhere(of, 97.0), 1e-6)
 
 
@@ -136,7 +136,7 @@ def doubled(of: HarmonicProblem, half: HarmonicProblem, z: np.ndarray) -> np.nda
 def test_half_orders_are_the_odd_part_of_the_doubled_problem(name: str, pendulum: bool) -> None:
     system = chain(LAWS[name], loss_factor=0.05 * pendulum, pendulum=pendulum)
     whole = Excitation(EXCITED.nodes, [0.0, 3.0], 1.0, EXCITED.torque[:, [0, 2]])
-    explorer = explored(system, whole, (50.0, 150.0), hold="end", highest_order=9.0)
+    explorer = explorer_of(system, whole, (50.0, 150.0), Exploration(hold="end", highest_order=9.0))
     # as many samples a period for both, lest they differ by what sampling costs a law that is not smooth
     of, half = (HarmonicProblem(replace(explorer.setting, samples=n), order) for n, order in ((512, 3.0), (1024, 1.5)))
     z = somewhere(of, 97.0)
@@ -155,7 +155,8 @@ def solved(
     machine: Machine, value: float, span: tuple[float, float], **changed: object
 ) -> tuple[HarmonicProblem, np.ndarray]:
     """The solution on the main branch of a machine at one speed, from a coarse trace."""
-    explorer = explored(machine.system, machine.excitation, span, hold=machine.hold, **changed)  # type: ignore[arg-type]
+    asked = Exploration(hold=machine.hold, stability=False, **changed)  # type: ignore[arg-type]
+    explorer = explorer_of(machine.system, machine.excitation, span, asked)
     explorer.main()
     branch = explorer.branches[0]
     nearest = branch.points[int(np.argmin(np.abs(branch.values - value)))]
@@ -212,7 +213,7 @@ def test_many_guesses_at_once() -> None:
 def test_a_singular_matrix_is_told() -> None:
     """Inside of a lash nothing holds the mean: no solution there, and no crash."""
     machine = oscillator(LASH, 0.0, {0.0: 0.3, 1.0: 0.3})
-    explorer = explored(machine.system, machine.excitation, (2.0, 3.0), highest_order=5.0)
+    explorer = explorer_of(machine.system, machine.excitation, (2.0, 3.0), Exploration(highest_order=5.0))
     of = explorer.problem(1.0)
     z = np.zeros(of.scale.size)
     found = of.at(z, 2.0)

@@ -21,7 +21,7 @@ from torsional.solvers.periodic.curves import DOUBLING, bifurcation_curve
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import explored
+from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.system import assemble
 
 Family = Callable[[HarmonicProblem, float], HarmonicProblem]
@@ -54,10 +54,8 @@ def subharmonic_boundary(
     if along != TORQUE and torque is None:
         raise ModelError("the mean torque is missing", where=TORQUE, remedy="give the one at which the value is varied")
     loads = EngineLoads(model, speed, highest_order)
-    system, hold = assemble(model.powertrain(gear)), model.landmarks.load
-    first = explored(
-        system, loads.at(span[1] if torque is None else torque), speed, hold=hold, highest_order=highest_order
-    )
+    asked = Exploration(hold=model.landmarks.load, highest_order=highest_order)
+    first = explorer_of(assemble(model.powertrain(gear)), loads.at(span[1] if torque is None else torque), speed, asked)
     family = loads.problem if along == TORQUE else _varied(model, along, gear)
     edges: list[tuple[float, Explorer]] = []
     for value in np.linspace(*span, places):

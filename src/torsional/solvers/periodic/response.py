@@ -55,6 +55,22 @@ class Variation:
     build: Callable[[float], System]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Exploration:
+    """What is asked of an exploration, each as `periodic_response` explains it."""
+
+    parameter: str | Variation = "speed"
+    hold: str = ""
+    speed: float | None = None
+    highest_order: float = HIGHEST_ORDER
+    base_order: float | None = None
+    depth: int = 2
+    stability: bool = True
+    isolated: bool = False
+    settings: Settings = TRACING
+    at: ArrayLike = ()
+
+
 @checked
 def periodic_response(
     system: System,
@@ -103,53 +119,44 @@ def periodic_response(
     >>> abs(found.twist.sel(element="spring", order=1)).values[found.speed.values == 3.0].round(4)
     array([0.1309])
     """
-    explorer = explored(
-        system,
-        excitation,
-        span,
+    asked = Exploration(
         parameter=parameter,
         hold=hold,
         speed=speed,
         highest_order=highest_order,
         base_order=base_order,
         depth=depth,
-        settings=settings,
         stability=stability,
+        isolated=isolated,
+        settings=settings,
+        at=at,
     )
+    return answered(system, excitation, span, asked)
+
+
+def answered(
+    system: System, excitation: Excitation | Load, span: tuple[float, float], asked: Exploration
+) -> xr.Dataset:
+    """What `periodic_response` gives back, of an exploration that is asked for as one thing."""
+    explorer, parameter = explorer_of(system, excitation, span, asked), asked.parameter
     explorer.explored()
-    if depth:
+    if asked.depth:
         seek_doubled(explorer)
-    if isolated:
+    if asked.isolated:
         seek_isolated(explorer)
-    explorer.branches = [refined(branch, at) for branch in explorer.branches]
+    explorer.branches = [refined(branch, asked.at) for branch in explorer.branches]
     name, unit = (parameter.name, parameter.unit) if isinstance(parameter, Variation) else (parameter, "")
-    return presented(explorer, name, unit, stability)
+    return presented(explorer, name, unit, asked.stability)
 
 
-def explored(
-    system: System,
-    excitation: Excitation | Load,
-    span: tuple[float, float],
-    *,
-    parameter: str | Variation = "speed",
-    hold: str = "",
-    speed: float | None = None,
-    highest_order: float = HIGHEST_ORDER,
-    base_order: float | None = None,
-    depth: int = 2,
-    stability: bool = False,
-    settings: Settings = TRACING,
+def explorer_of(
+    system: System, excitation: Excitation | Load, span: tuple[float, float], asked: Exploration
 ) -> Explorer:
-    """The branches themselves, as `periodic_response` presents them."""
-    low, high = float(span[0]), float(span[1])
-    if not low < high or not np.isfinite([low, high]).all():
-        raise ModelError("the span goes from a lower to a higher value", where="span", found=f"{low:g} to {high:g}")
-    if parameter == "speed" and low <= 0:
-        raise ModelError("speeds are above zero", where="span", found=f"{low:g} rad/s")
-    if parameter != "speed" and not (speed and speed > 0):
-        raise ModelError("the speed is missing", where="speed", remedy="all parameters but the speed need one")
+    """The explorer that follows the branches, which has followed none yet."""
+    low, high = _checked_span(span, asked)
+    parameter, speed, highest = asked.parameter, asked.speed, asked.highest_order
     load = _load(excitation, parameter, low)
-    order = base_order or load.base_order
+    order = asked.base_order or load.base_order
     load.refuse_others(order)
     make: Callable[[Setting, float], HarmonicProblem] = HarmonicProblem
     if isinstance(parameter, Variation):
@@ -159,13 +166,27 @@ def explored(
     split = Split(system if speed is None else system.loaded(speed), turning)
     fixed = None if parameter == "speed" else speed
     unit = low if low > 0.05 * high else max(abs(low), abs(high))
-    setting = Setting(split, load, hold, fixed, highest_order, np.ones(len(split.laws)), unit, main_order=order)
-    if setting.harmonics(order) * order < order or order > highest_order:
-        raise ModelError("the highest order is below the base order", where="highest_order", found=f"{highest_order:g}")
+    setting = Setting(split, load, asked.hold, fixed, highest, np.ones(len(split.laws)), unit, main_order=order)
+    if setting.harmonics(order) * order < order or order > highest:
+        raise ModelError("the highest order is below the base order", where="highest_order", found=f"{highest:g}")
     unscaled = make(setting, order)
     setting = replace(setting, angle_scale=_angle_scale(unscaled, (low, high)))
     known = {order: unscaled.rescaled(setting)}
-    return Explorer(setting, order, (low, high), settings, depth, stability, make=make, problems=known)
+    return Explorer(
+        setting, order, (low, high), asked.settings, asked.depth, asked.stability, make=make, problems=known
+    )
+
+
+def _checked_span(span: tuple[float, float], asked: Exploration) -> tuple[float, float]:
+    """The ends of the parameter, refused unless they and the speed are what it wants."""
+    low, high = float(span[0]), float(span[1])
+    if not low < high or not np.isfinite([low, high]).all():
+        raise ModelError("the span goes from a lower to a higher value", where="span", found=f"{low:g} to {high:g}")
+    if asked.parameter == "speed" and low <= 0:
+        raise ModelError("speeds are above zero", where="span", found=f"{low:g} rad/s")
+    if asked.parameter != "speed" and not (asked.speed and asked.speed > 0):
+        raise ModelError("the speed is missing", where="speed", remedy="all parameters but the speed need one")
+    return low, high
 
 
 def _load(excitation: Excitation | Load, parameter: str | Variation, value: float) -> Load:

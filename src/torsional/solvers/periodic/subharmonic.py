@@ -22,7 +22,7 @@ from torsional.solvers.periodic.branches import MAIN, Branch, Explorer
 from torsional.solvers.periodic.isolated import seek_doubled
 from torsional.solvers.periodic.machine import EngineLoads
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
-from torsional.solvers.periodic.response import explored
+from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
 from torsional.solvers.periodic.verdict import verdict
@@ -61,9 +61,8 @@ def subharmonic_map(
             raise ModelError("at least two rising values are wanted", where=name, found=str(values[:4]))
     system, span = assemble(model.powertrain(gear)), (float(speeds[0]), float(speeds[-1]))
     loads = EngineLoads(model, span, highest_order)
-    first = explored(
-        system, loads.at(float(torques[-1])), span, hold=model.landmarks.load, highest_order=highest_order, depth=1
-    )
+    asked = Exploration(hold=model.landmarks.load, highest_order=highest_order)
+    first = explorer_of(system, loads.at(float(torques[-1])), span, asked)
     place = element or first.setting.split.names[0]
     quiet = node or model.landmarks.input or system.nodes[-1]
     table = _Table(speeds, torques, system.connections.names.index(place), system.node_index(quiet))

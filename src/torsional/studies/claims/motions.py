@@ -12,7 +12,7 @@ from torsional.solvers.periodic.branches import Branch, Explorer
 from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.machine import engine_load, engine_torque_load
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import explored
+from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
 from torsional.studies.claims.answers import input_shaft
@@ -31,18 +31,15 @@ def over_torque(
 ) -> Explorer:
     """Branches over a range of mean torque [Nm] at one speed [rad/s], followed."""
     load = engine_torque_load(model, speed, torque, highest_order)
-    found = explored(
-        assemble(model.powertrain(gear)),
-        load,
-        torque,
+    asked = Exploration(
         parameter="mean_torque",
         speed=speed,
         hold=model.landmarks.load,
         highest_order=highest_order,
         depth=depth,
+        stability=False,
     )
-    found.explored()
-    return found
+    return _followed(explorer_of(assemble(model.powertrain(gear)), load, torque, asked))
 
 
 def over_speed(
@@ -50,16 +47,13 @@ def over_speed(
 ) -> Explorer:
     """Branches over a range of speed [rad/s] at one mean torque [Nm], followed."""
     load = engine_load(model, speed, torque, highest_order)
-    found = explored(
-        assemble(model.powertrain(gear)),
-        load,
-        speed,
-        hold=model.landmarks.load,
-        highest_order=highest_order,
-        depth=depth,
-    )
-    found.explored()
-    return found
+    asked = Exploration(hold=model.landmarks.load, highest_order=highest_order, depth=depth, stability=False)
+    return _followed(explorer_of(assemble(model.powertrain(gear)), load, speed, asked))
+
+
+def _followed(explorer: Explorer) -> Explorer:
+    explorer.explored()
+    return explorer
 
 
 def doubled(explorer: Explorer) -> list[Branch]:
