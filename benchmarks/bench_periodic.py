@@ -135,7 +135,7 @@ def test_h3_region(timed, declared):
 
 def _bounded(found) -> None:
     """The curve's extent; the map vibrates where the curve says, but for the few places between it and its chords."""
-    torque, speed = found.boundary_torque.values, found.boundary_speed.values / dmf12.RPM
+    torque, speed = found.boundary_mean_torque.values, found.boundary_speed.values / dmf12.RPM
     assert set(found.boundary_kind.values) == {"period doubling"} and found.boundary_curve.max() == 0
     np.testing.assert_allclose([torque.min(), torque.max()], BOUNDARY_TORQUE, atol=0.01)
     np.testing.assert_allclose([speed.min(), speed.max()], BOUNDARY_SPEED, atol=0.01)

@@ -30,11 +30,12 @@ def write_all(folder: Path) -> None:
     """Write every generated page into ``folder``, which is emptied first."""
     from torsional.cli.app import command
     from torsional.files.schema.document import json_schema
+    from torsional.results import NAMES
     from torsional.units import QUANTITIES
 
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    (folder / "nomenclature.md").write_text(nomenclature(QUANTITIES), encoding="utf-8")
+    (folder / "nomenclature.md").write_text(nomenclature(QUANTITIES, NAMES), encoding="utf-8")
     (folder / "command_line.md").write_text(faces.command_line_page(command()), encoding="utf-8")
     (folder / "model_file.md").write_text(faces.model_file_page(json_schema()), encoding="utf-8")
     names = list(module_names(PACKAGE))
@@ -43,15 +44,22 @@ def write_all(folder: Path) -> None:
     (folder / "modules.md").write_text(modules_page(names), encoding="utf-8")
 
 
-def nomenclature(quantities: Mapping[str, Any]) -> str:
-    """A page with a table of the quantities' symbols, names and units."""
+def nomenclature(quantities: Mapping[str, Any], names: Mapping[str, Any]) -> str:
+    """A page with a table of the quantities' symbols, names and units, and one of the names in results."""
     rows = [f"| {q.symbol} | `{name}` | {q.long_name} | {q.unit} |" for name, q in quantities.items()]
     head = ["# Nomenclature", "", _ABOUT_UNITS, "", "| symbol | name | meaning | unit |", "| --- | --- | --- | --- |"]
-    return "\n".join([*head, *rows, ""])
+    units = {name: quantities[n.quantity].unit if n.quantity in quantities else "" for name, n in names.items()}
+    told = [f"| `{name}` | {named.meaning} | {units[name]} |" for name, named in names.items()]
+    results = ["", "## Names in results", "", _ABOUT_NAMES, "", "| name | meaning | unit |", "| --- | --- | --- |"]
+    return "\n".join([*head, *rows, *results, *told, ""])
 
 
 _ABOUT_UNITS = """Every value inside is in SI units and radians; this table is read from `torsional.units`, the same one
 that reads the units in model files."""
+
+_ABOUT_NAMES = """Variables and coordinates of the Datasets that analyses return; a name means the same in all of them.
+`torque` is always a connection's, `mean_torque` the engine's mean. Without a unit: names, counts, and what is of
+several quantities."""
 
 
 def module_names(package: str) -> Iterator[str]:

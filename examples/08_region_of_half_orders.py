@@ -15,8 +15,8 @@ def main(target: Path = Path("out/region_of_half_orders.png")) -> dict[str, floa
     region = tv.subharmonic_map(truck, np.arange(740, 981, 5) * RPM, np.arange(860.0, 1441.0, 20.0))
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_bytes(save_png(plot_region(region, "acceleration")))
-    highest = float(region.boundary_torque.max())
-    print(f"order 1.5 from {float(region.boundary_torque.min()):.0f} to {highest:.0f} Nm; written: {target}")
+    highest = float(region.boundary_mean_torque.max())
+    print(f"order 1.5 from {float(region.boundary_mean_torque.min()):.0f} to {highest:.0f} Nm; written: {target}")
 
     path = "absorber.stages.1.stiffness"
     edge = tv.subharmonic_boundary(truck, (700 * RPM, 1300 * RPM), (12e3, 36e3), path, torque=1200.0, places=3)

@@ -15,7 +15,7 @@ def main(target: Path = Path("out/peak_over_stiffness.png")) -> dict[str, float]
     for stiffness in stiffnesses:
         changed = tv.changed(truck, {"clutch.stiffness": stiffness})
         result = tv.response_map(changed, truck.speeds(351), [1000.0], gears=[12], orders=[3.0])
-        torque = tv.amplitude(result.torque_order.sel(element="clutch"), 3.0).squeeze()
+        torque = tv.amplitude(result.torque.sel(element="clutch"), 3.0).squeeze()
         at.append(float(torque.speed[int(torque.argmax("speed"))]) / tv.RPM)
         peaks.append(float(torque.max()))
         system, _ = tv.operated(changed, torque=1000.0, gear=12)

@@ -87,19 +87,19 @@ def region() -> xr.Dataset:
     size = 500 * np.sqrt(np.clip(inside, 0, None))
     turn = np.linspace(0, 2 * np.pi, 41)
     kinds = np.where(turn < np.pi / 2, "fold", "period doubling")
-    over = ("torque", "speed")
+    over = ("mean_torque", "speed")
     return dataset(
         {
             "amplitude": (over, size, "torque"),
             "twist_amplitude": (over, size / STIFFNESS, "relative_angle"),
             "acceleration": (over, 0.4 * size, "acceleration"),
-            "stable_solutions": (over, 1 + ((size > 0) & (speed < 80)), "number"),
+            "stable_solutions": (over, 1 + ((size > 0) & (speed < 80)), ""),
             "boundary_speed": (("boundary_point",), 95 + 20 * np.cos(turn), "speed"),
-            "boundary_torque": (("boundary_point",), 1100 + 200 * np.sin(turn), "torque"),
+            "boundary_mean_torque": (("boundary_point",), 1100 + 200 * np.sin(turn), "torque"),
             "boundary_kind": (("boundary_point",), kinds, ""),
             "boundary_curve": (("boundary_point",), np.zeros(len(turn), dtype=int), ""),
         },
-        {"torque": (torque, "torque"), "speed": (speed, "speed")},
+        {"mean_torque": (torque, "torque"), "speed": (speed, "speed")},
         analysis="sub-harmonic map",
         order=1.5,
         element="dmf",

@@ -18,6 +18,7 @@ from ruamel.yaml import YAML
 import torsional
 from torsional.cli.app import command
 from torsional.files.schema.document import json_schema
+from torsional.results import ANY, NAMES
 from torsional.units import QUANTITIES
 
 ROOT = Path(__file__).parent.parent
@@ -165,8 +166,10 @@ def generate(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return loaded(ROOT / "docs" / "generate.py")
 
 
-def test_nomenclature_page_lists_every_quantity(generate: ModuleType) -> None:
-    page = generate.nomenclature(QUANTITIES)
+def test_nomenclature_page_lists_every_quantity_and_name(generate: ModuleType) -> None:
+    page = generate.nomenclature(QUANTITIES, NAMES)
+    assert {named.quantity for named in NAMES.values()} <= {*QUANTITIES, "", ANY}
+    assert all(f"| `{name}` | {named.meaning} |" in page for name, named in NAMES.items())
     for name, quantity in QUANTITIES.items():
         assert f"| {quantity.symbol} | `{name}` | {quantity.long_name} | {quantity.unit} |" in page
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from torsional.errors import ModelError
-from torsional.results import dataset, load_results, save_results
+from torsional.results import dataset, labelled, load_results, save_results
 
 
 def test_round_trip(tmp_path: Path) -> None:
@@ -37,7 +37,7 @@ def test_refused(tmp_path: Path) -> None:
 
 
 def test_a_table_has_its_units_in_the_headings(tmp_path: Path) -> None:
-    made = dataset(
+    made = labelled(
         {"angle": (("speed", "node"), np.array([[1 + 2j, 3j]]), "angle"), "swing": (("speed",), [2.5], "torque")},
         {"speed": ([20 * np.pi], "speed"), "node": (["hub", "=rim"], "")},
         analysis="test",
@@ -50,6 +50,18 @@ def test_a_table_has_its_units_in_the_headings(tmp_path: Path) -> None:
 
 
 def test_one_quantity_is_a_table_too(tmp_path: Path) -> None:
-    shaken = dataset({"a": (("order",), [4.0], "acceleration")}, {"order": ([3.0], "engine_order")}, analysis="x").a
+    shaken = labelled({"a": (("order",), [4.0], "acceleration")}, {"order": ([3.0], "engine_order")}, analysis="x").a
     text = save_results(shaken, tmp_path / "r.csv").read_text(encoding="utf-8-sig")
     assert text.split() == ["order,a", "[rad/s²]", "3.0,4.0"]
+
+
+def test_one_name_for_one_thing() -> None:
+    speed = {"speed": ([100.0], "speed")}
+    with pytest.raises(ModelError, match=r"no such name.*did you mean 'mean_twist'"):
+        dataset({"mean_twists": (("speed",), [0.1], "relative_angle")}, speed, analysis="x")
+    with pytest.raises(ModelError, match=r"another quantity.*found angle.*allowed: torque"):
+        dataset({"torque": (("speed",), [0.1], "angle")}, speed, analysis="x")
+    with pytest.raises(ModelError, match="third argument"):
+        dataset({}, {"moonlight": ([0.1], "")}, analysis="x")
+    told = dataset({"wear": (("speed",), [0.1], "ratio")}, speed, {"wear": "share of a lining"}, analysis="x")
+    assert told.wear.attrs["quantity"] == "ratio"

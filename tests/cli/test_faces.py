@@ -17,7 +17,7 @@ import xarray as xr
 
 from torsional.cli.documents import escaped, json_text
 from torsional.cli.tables import Column, Table, plain
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.spreadsheet import csv_text, neutral
 
 Run = Callable[..., Any]
@@ -70,7 +70,7 @@ def test_a_component_named_like_a_formula(torsional: Run) -> None:
 
 def example() -> xr.Dataset:
     values = np.array([[[1 + 2j, 3 - 4j]], [[0.1, complex("nan+nanj")]]])
-    return dataset(
+    return labelled(
         {
             "angle": (("speed", "order", "node"), values, "angle"),
             "mean": (("speed",), [5.0, 6.0], "torque"),

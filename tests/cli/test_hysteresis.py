@@ -48,8 +48,8 @@ def test_files_of_every_kind(torsional: Run) -> None:
     saved = load_results("out.nc")
     assert saved.attrs["held"] == "secondary" and saved.sizes["element"] > 30
     rows = list(csv.DictReader(io.StringIO(Path("out.csv").read_text(encoding="utf-8-sig"))))
-    assert len(rows) == saved.torque.size
-    assert [float(row["torque [Nm]"]) for row in rows[:5]] == pytest.approx(saved.torque.values.ravel()[:5])
+    assert len(rows) == saved.drive_torque.size
+    assert [float(row["drive_torque [Nm]"]) for row in rows[:5]] == pytest.approx(saved.drive_torque.values.ravel()[:5])
     settings = json.loads(told.out)["settings"]
     assert settings["rate"] == {"value": pytest.approx(np.radians(3.0)), "units": "rad/s"}
 

@@ -315,13 +315,13 @@ def test_the_region_is_told(torsional: Run) -> None:
     saved = load_results("out.nc")
     table = list(csv.reader(io.StringIO(Path("out.csv").read_text(encoding="utf-8-sig"))))
     assert len(table) == 1 + saved.amplitude.size
-    assert {"torque [Nm]", "speed [rpm]", "amplitude [Nm]", "within_full_load"} <= set(table[0])
+    assert {"mean_torque [Nm]", "speed [rpm]", "amplitude [Nm]", "within_full_load"} <= set(table[0])
     assert json.loads(Path("out.json").read_text(encoding="utf-8"))["settings"]["order"] == 1.5
 
 
 def test_a_map_and_a_branch_agree(torsional: Run) -> None:
     assert torsional("subharmonic", STAGED, *SMALL, "-o", "map.nc", "-q").code == 0
-    size = float(load_results("map.nc").amplitude.sel(torque=1200.0).sel(speed=900 * RPM, method="nearest"))
+    size = float(load_results("map.nc").amplitude.sel(mean_torque=1200.0).sel(speed=900 * RPM, method="nearest"))
     motions = document(torsional, *AT_1200, "--at", "900rpm")["motions"]["variables"]["torque"]
     assert size == pytest.approx(np.hypot(motions["real"][1][1][0], motions["imaginary"][1][1][0]), rel=1e-6)
 
@@ -354,10 +354,10 @@ def test_bad_regions_are_refused(torsional: Run, arguments: list[str], told: lis
 def test_what_lies_above_full_load_is_not_told() -> None:
     found = region()
     above = found.torque.values[:, None] * np.ones(found.sizes["speed"]) < 1100
-    summary, rows = tables(found.assign(within_full_load=(("torque", "speed"), above)), "Order 1.5")
+    summary, rows = tables(found.assign(within_full_load=(("mean_torque", "speed"), above)), "Order 1.5")
     assert max(float(str(row[5])) for row in summary.rows) < 1100
     assert max(float(str(row[0])) for row in rows.rows) < 1100
-    nothing = found.assign(within_full_load=(("torque", "speed"), np.zeros_like(above)))
+    nothing = found.assign(within_full_load=(("mean_torque", "speed"), np.zeros_like(above)))
     assert "though there is some above it" in str(tables(nothing, "Order 1.5")[0].rows)
 
 

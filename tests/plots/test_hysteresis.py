@@ -38,8 +38,8 @@ def test_a_loop_for_every_speed(loops: xr.Dataset) -> None:
     for line, speed in zip(drawn, loops.speed, strict=True):
         x, y = (np.asarray(values) for values in line.get_data())
         assert (x[0], y[0]) == (x[-1], y[-1])
-        assert np.radians(x[:-1]) == pytest.approx(loops.drive.isel(sweep=1).values)
-        assert y[:-1] == pytest.approx(loops.torque.sel(speed=speed, cycle="closed").isel(sweep=1).values)
+        assert np.radians(x[:-1]) == pytest.approx(loops.drive_angle.isel(sweep=1).values)
+        assert y[:-1] == pytest.approx(loops.drive_torque.sel(speed=speed, cycle="closed").isel(sweep=1).values)
     assert axes.get_xlabel() == "angle of disc a against disc b [deg]"
     assert axes.get_ylabel() == "torque [Nm]"
 

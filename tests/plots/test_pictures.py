@@ -95,12 +95,12 @@ def test_order_cuts_have_a_line_for_each_variant_and_order(orders: xr.DataArray)
 
 
 def test_order_lines_tell_which_dimension_is_too_much(orders: xr.DataArray) -> None:
-    one = orders.expand_dims(torque=[1500.0])
+    one = orders.expand_dims(mean_torque=[1500.0])
     line = plots.plot_gears(one, 3.0).axes[0].lines[0]
     assert np.array_equal(line.get_ydata(), plots.plot_gears(orders, 3.0).axes[0].lines[0].get_ydata())
-    two = orders.expand_dims(torque=[1500.0, 2000.0])
+    two = orders.expand_dims(mean_torque=[1500.0, 2000.0])
     for picture in (lambda: plots.plot_gears(two, 3.0), lambda: plots.plot_order_cuts({"a": two}, "12", [3.0])):
-        with pytest.raises(ModelError, match=r"2 values of 'torque' as well; choose one: \.sel\(torque=…\)"):
+        with pytest.raises(ModelError, match=r"2 values of 'mean_torque' as well; choose one: \.sel\(mean_torque=…\)"):
             picture()
     with pytest.raises(ModelError, match="order 4 was not computed"):
         plots.plot_gears(orders, 4.0)
@@ -135,7 +135,7 @@ def test_map(grid: xr.Dataset) -> None:
     figure = plots.plot_map(size, within=grid.within_full_load, title="the <first> $variant")
     axes = figure.axes[0]
     drawn = np.ma.filled(axes.collections[0].get_array()).reshape(6, 8)
-    assert drawn == pytest.approx(size.transpose("torque", "speed").values)
+    assert drawn == pytest.approx(size.transpose("mean_torque", "speed").values)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("engine speed [rpm]", "mean engine torque [Nm]")
     assert "acceleration [rad/s²], half peak-to-peak" in texts(figure)
     assert axes.get_ylim() == (0.0, 2500.0)

@@ -38,7 +38,7 @@ def test_the_region_is_told_in_a_sentence(found: Motions, trucks: Comparison) ->
     (finding,) = [f for f in motion_findings(found) if f.kind == "sub-harmonic"]
     assert finding.values["amplitude"] == pytest.approx(644, abs=4)
     assert finding.values["speed"] / RPM == pytest.approx(910, abs=6)
-    assert finding.values["torque"] == pytest.approx(1250, abs=30)
+    assert finding.values["mean_torque"] == pytest.approx(1250, abs=30)
     assert "order 1.5" in finding.text and "644 Nm (0-peak) in dmf" in finding.text
     assert finding.text in [f.text for _, group in findings(trucks) for f in group]
 

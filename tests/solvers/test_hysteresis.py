@@ -55,7 +55,7 @@ def loading(angle: Array, friction: float = FRICTION) -> Array:
 def branches(loop: xr.Dataset) -> tuple[Array, Array, Array]:
     """Angle, first and closed torque of a single loop."""
     one = loop.isel(speed=0, sweep=0)
-    return one.drive.values, one.torque.values[0], one.torque.values[1]
+    return one.drive_angle.values, one.drive_torque.values[0], one.torque.values[1]
 
 
 # --- closed forms ---
@@ -97,15 +97,15 @@ def test_row_of_shoes(sweep: float) -> None:
 def test_balance_holds_and_losses_add_up() -> None:
     loop = hysteresis(shoes(Jenkins(FRICTION, STUCK)), "primary", "secondary", 0.0, [0.02, 0.1])
     assert loop.element_loss.sum("element").values == pytest.approx(loop.loss.values, rel=1e-7)
-    last = loop.element_torque.sel(element=f"spring_0_{SPRINGS}")
-    assert last.values == pytest.approx(loop.torque.values, abs=1e-6)  # what arrives at the secondary
+    last = loop.torque.sel(element=f"spring_0_{SPRINGS}")
+    assert last.values == pytest.approx(loop.drive_torque.values, abs=1e-6)  # what arrives at the secondary
 
 
 def test_turned_from_the_other_end() -> None:
     """The secondary turned against the primary: torque and angle change their signs, the loop stays."""
     one = hysteresis(shoes(Jenkins(FRICTION, STUCK)), "primary", "secondary", 0.0, 0.05)
     two = hysteresis(shoes(Jenkins(FRICTION, STUCK)), "secondary", "primary", 0.0, 0.05)
-    assert two.torque.values == pytest.approx(one.torque.values, abs=1e-6)
+    assert two.drive_torque.values == pytest.approx(one.drive_torque.values, abs=1e-6)
 
 
 def test_load_follows_the_square_of_the_speed() -> None:
@@ -163,7 +163,7 @@ def test_what_acts_elsewhere_is_left_out() -> None:
     loaded = pair(spring=Shaft("b", "a", 1e3), **more)
     loops = [hysteresis(system, "a", "b", 100.0, 0.1) for system in (plain, loaded)]
     assert loops[1].element.values.tolist() == ["spring"]
-    assert loops[1].torque.values == pytest.approx(loops[0].torque.values, abs=1e-9)
+    assert loops[1].drive_torque.values == pytest.approx(loops[0].drive_torque.values, abs=1e-9)
 
 
 # --- integration in time ---
@@ -222,9 +222,9 @@ def test_rows_alike_are_solved_once_and_told_each() -> None:
     (part,) = parts_of(on_bench(three, "primary", "secondary").system.connections)
     assert part.elements.shape == (3, 2 * SPRINGS - 1) and part.columns.shape == (3, SPRINGS - 1)
     one, all_three = (hysteresis(s, "primary", "secondary", 0.0, 0.05) for s in (single, three))
-    assert all_three.torque.values == pytest.approx(3 * one.torque.values, rel=1e-9, abs=1e-9)
+    assert all_three.drive_torque.values == pytest.approx(3 * one.drive_torque.values, rel=1e-9, abs=1e-9)
     assert all_three.sliding.item() == 3 * one.sliding.item()
-    named = [all_three.element_torque.sel(element=f"spring_{row}_2").values for row in range(3)]
+    named = [all_three.torque.sel(element=f"spring_{row}_2").values for row in range(3)]
     assert all((other == named[0]).all() for other in named)
 
 
@@ -244,7 +244,9 @@ def test_about_an_angle() -> None:
     law = Hinges.staged([(500.0, 1e4), (2000.0, 4e4)])
     loop = hysteresis(pair(spring=Coupling("b", "a", law)), "a", "b", 0.0, 0.005, centre=0.08)
     assert loop.stiffness.item() == pytest.approx(4e4)
-    assert loop.drive.values.min() == pytest.approx(0.075) and loop.drive.values.max() == pytest.approx(0.085)
+    assert loop.drive_angle.values.min() == pytest.approx(0.075) and loop.drive_angle.values.max() == pytest.approx(
+        0.085
+    )
 
 
 def test_slow_sweeps_lose_what_dampers_take() -> None:

@@ -29,7 +29,7 @@ def test_springs_that_slide_freely_need_the_friction_of_their_weight(trucks: Tru
     mass = block["channels"] * (0.49 + 0.17)
     assert (block["spring"]["mass"], block["inner_spring"]["mass"]) == ("0.49 kg", "0.17 kg")
     weight = mass * 0.150**2 * speed**2
-    angle, torque = np.degrees(loop.drive.values), loop.torque.sel(cycle="closed").values
+    angle, torque = np.degrees(loop.drive_angle.values), loop.drive_torque.sel(cycle="closed").values
     pushed = (np.arange(angle.size) < angle.size // 4) & (angle > 1.0) & (angle < 4.0)
     assert 0.09 * weight < torque[pushed].min() and torque[pushed].max() < 0.11 * weight * np.exp(
         0.11 * np.radians(72.8)

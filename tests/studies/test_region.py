@@ -40,7 +40,7 @@ def test_a_torque_crosses_the_boundary_twice(found: xr.Dataset) -> None:
 
 
 def test_stretches_end_at_the_boundary_and_not_at_the_grid(found: xr.Dataset) -> None:
-    row = int(np.flatnonzero(found.torque.values == 1150.0)[0])
+    row = int(np.flatnonzero(found.mean_torque.values == 1150.0)[0])
     ((columns, low, high),) = stretches(found, row)
     half = 20 * np.sqrt(1 - (50 / 200) ** 2)
     assert (low, high) == pytest.approx((95 - half, 95 + half), abs=2e-3)
@@ -67,7 +67,7 @@ def test_nothing_is_not_looked_at_closely(found: xr.Dataset) -> None:
 
 
 def test_what_lies_above_full_load_is_left_out(found: xr.Dataset) -> None:
-    reached = found.torque < 1100 + 0 * found.speed
+    reached = found.mean_torque < 1100 + 0 * found.speed
     kept = within(found.assign(within_full_load=reached))
     assert float(kept.amplitude.where(~reached).max()) == 0
     assert float(kept.amplitude.where(reached).max()) == float(found.amplitude.where(reached).max()) > 0

@@ -43,8 +43,8 @@ def pushed(segments: int) -> tuple[np.ndarray, np.ndarray, float]:
     )  # from where several sections slide
     names = [f"arc_1_{i}_guide" for i in range(1, segments + 2)]
     end = first.isel(sample=-1)
-    resists = abs(end.element_torque.sel(element=names)) / (FRICTION * RADIUS * end.normal_load.sel(element=names))
-    return first.drive.values, first.torque.values, float((resists > 0.99).mean())
+    resists = abs(end.torque.sel(element=names)) / (FRICTION * RADIUS * end.normal_load.sel(element=names))
+    return first.drive_angle.values, first.drive_torque.values, float((resists > 0.99).mean())
 
 
 @pytest.mark.parametrize(("segments", "error"), [(16, 3e-3), (32, 8e-4)])

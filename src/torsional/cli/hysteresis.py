@@ -29,7 +29,17 @@ if TYPE_CHECKING:
 SPEEDS, WIDEST = "0,2000,4000 rpm", np.radians(60.0)
 SHORT = 0.95
 """How far towards the stop the sweep goes unless told otherwise."""
-SMALL = ("torque", "drive", "loss", "stiffness", "harmonic_stiffness", "loss_factor", "sliding", "cycles", "closure")
+SMALL = (
+    "drive_torque",
+    "drive_angle",
+    "loss",
+    "stiffness",
+    "harmonic_stiffness",
+    "loss_factor",
+    "sliding",
+    "cycles",
+    "closure",
+)
 """What a .csv holds; a .netCDF has every node and element as well."""
 
 
@@ -115,7 +125,7 @@ def warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:
         stops = getattr(law, "stops", ())
         if name not in model.landmarks.springs or name not in data.element or not stops:
             continue
-        twist = data.element_twist.sel(element=name)
+        twist = data.twist.sel(element=name)
         over = [
             float(a)
             for a, t in zip(data.sweep, twist.transpose("sweep", ...).values, strict=True)
@@ -154,7 +164,7 @@ def table(data: xr.Dataset, title: str) -> Table:
     for speed, sweep in _cases(data):
         one = data.sel(speed=speed, sweep=sweep)
         figures = [one.stiffness, one.harmonic_stiffness, one.loss, one.loss_factor]
-        rows.append([sweep, speed, *map(float, figures), float(abs(one.torque.sel(cycle="closed")).max())])
+        rows.append([sweep, speed, *map(float, figures), float(abs(one.drive_torque.sel(cycle="closed")).max())])
         rows[-1] += [float(one.sliding)] if count else []
     return Table(f"Hysteresis: {title}", columns, rows)
 

@@ -61,13 +61,13 @@ def reduced(full: xr.Dataset, model: Model) -> xr.Dataset:
     """All orders together in each cell of a `response_map`, beside the bounds; gear by gear, to spare memory."""
     parts = [_one_gear(full.isel(gear=[i]), model) for i in range(full.sizes["gear"])]
     found = xr.concat(parts, "gear", combine_attrs="override")
-    kept = full[["within_full_load", "travel"]].assign(unsolved=(full.status > 1).any("order"))
+    kept = full[["within_full_load", "mean_twist"]].assign(unsolved=(full.status > 1).any("order"))
     return without_empty(found.merge(kept)).assign_attrs(full.attrs)
 
 
 def _one_gear(full: xr.Dataset, model: Model) -> xr.Dataset:
-    told = together(full.angle, full.torque_order)
-    return xr.Dataset({name: values.transpose("gear", "torque", "speed", ...) for name, values in told.items()})
+    told = together(full.angle, full.torque)
+    return xr.Dataset({name: values.transpose("gear", "mean_torque", "speed", ...) for name, values in told.items()})
 
 
 def _warn_unsolved(full: xr.Dataset) -> None:
@@ -82,7 +82,12 @@ def _summary(full: xr.Dataset, model: Model) -> Table:
     rows: list[Sequence[object]] = [
         ["model", model.name],
         ["gears", ", ".join(name for name in full.gear.values if name) or "none"],
-        ["grid", " × ".join(f"{full.sizes[dim]} {dim}s" for dim in ("gear", "torque", "speed", "order"))],
+        [
+            "grid",
+            " × ".join(
+                f"{full.sizes[dim]} {dim.removeprefix('mean_')}s" for dim in ("gear", "mean_torque", "speed", "order")
+            ),
+        ],
         ["cells within full load", f"{within} of {full.within_full_load.size * full.sizes['gear']}"],
     ]
     return Table("Map", [Column("what"), Column("value")], rows)
@@ -107,11 +112,11 @@ def _worst(data: xr.Dataset, dim: str, kind: str, place: str, count: int) -> lis
     ranked = np.argsort(-swung.fillna(-1.0).values, axis=None, kind="stable")[:count]
     rows = []
     for gear, torque, speed in zip(*np.unravel_index(ranked, swung.shape), strict=True):
-        at = {"gear": int(gear), "torque": int(torque), "speed": int(speed)}
+        at = {"gear": int(gear), "mean_torque": int(torque), "speed": int(speed)}
         cell, limit = swung.isel(at), most.isel(at)
         if np.isfinite(float(cell)):
             rows.append(
-                [place, str(cell.gear.values), float(cell.torque), float(cell.speed), float(cell), float(limit)]
+                [place, str(cell.gear.values), float(cell.mean_torque), float(cell.speed), float(cell), float(limit)]
             )
     return rows
 

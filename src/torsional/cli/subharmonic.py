@@ -89,7 +89,7 @@ def _nothing(data: xr.Dataset, title: str) -> Table:
 
 
 def _grid(data: xr.Dataset) -> str:
-    return " × ".join(f"{data.sizes[dim]} {dim}s" for dim in ("torque", "speed"))
+    return " × ".join(f"{data.sizes[dim]} {dim.removeprefix('mean_')}s" for dim in ("mean_torque", "speed"))
 
 
 def _summary(inside: xr.Dataset, title: str) -> Table:
@@ -97,12 +97,12 @@ def _summary(inside: xr.Dataset, title: str) -> Table:
     columns.insert(3, Column("unit"))
     rows = []
     for name, place in (("amplitude", "element"), ("twist_amplitude", "element"), ("acceleration", "node")):
-        size = inside[name].transpose("torque", "speed")
+        size = inside[name].transpose("mean_torque", "speed")
         row, column = np.unravel_index(int(np.argmax(size.values)), size.shape)
         entry = QUANTITIES[str(size.attrs["quantity"])]
         shown = Column("", entry.name).cell(float(size[row, column]))
         kind = {"amplitude": "torque", "twist_amplitude": "twist"}.get(name, name)
-        at = [float(inside.speed[column]), float(inside.torque[row])]
+        at = [float(inside.speed[column]), float(inside.mean_torque[row])]
         rows.append([kind, inside.attrs[place], shown, entry.shown, *at])
     return Table(f"{title}: largest stable sub-harmonic vibration within full load", columns, rows)
 
@@ -119,9 +119,9 @@ def _by_torque(inside: xr.Dataset, data: xr.Dataset, title: str) -> Table:
 
 def _rows(inside: xr.Dataset) -> Iterator[list[object]]:
     """One row for each run of neighbouring speeds at each torque."""
-    for row, torque in enumerate(inside.torque.values):
+    for row, torque in enumerate(inside.mean_torque.values):
         for columns, low, high in stretches(inside, row):
-            here = inside.isel(torque=row, speed=columns)
+            here = inside.isel(mean_torque=row, speed=columns)
             size, several = here.amplitude, "yes" if bool((here.stable_solutions > 1).any()) else ""
             at = int(np.argmax(size.values))
             largest = [float(size[at]), float(here.speed[at]), float(here.acceleration.max())]

@@ -50,11 +50,11 @@ def plot_hysteresis(loops: xr.Dataset, *, title: str = "") -> Figure:
 def plot_hysteresis_loops(loops: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     """Torque over angle of one sweep, a closed loop for each speed; dotted the first loading from rest."""
     figure, drawn = style.on(axes, (6.4, 5.4))
-    angle = style.shown(loops.drive, "relative_angle")
+    angle = style.shown(loops.drive_angle, "relative_angle")
     quarter = angle.size // 4
     for number, speed in enumerate(style.shown(loops.speed, "speed")):
         look: dict[str, Any] = {"color": style.COLOURS[number % len(style.COLOURS)], "zorder": 20 - number}
-        torque = style.shown(loops.torque.isel(speed=number), "torque")
+        torque = style.shown(loops.drive_torque.isel(speed=number), "torque")
         first, closed = torque[0], torque[1]
         closed, x = np.append(closed, closed[:1]), np.append(angle, angle[:1])
         drawn.plot(x, closed, gid="loop", label=f"{speed:.0f} rpm", **look)

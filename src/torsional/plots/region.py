@@ -32,8 +32,8 @@ def plot_region(
     dotted; a cross marks the largest amplitude; ``full_load`` (speed) [Nm].
     """
     figure, drawn = style.on(axes, (7.6, 4.8))
-    values = found[shown].transpose("torque", "speed")
-    rpm, torque = style.shown(values.speed), style.shown(values.torque)
+    values = found[shown].transpose("mean_torque", "speed")
+    rpm, torque = style.shown(values.speed), style.shown(values.mean_torque)
     size = np.ma.masked_less_equal(np.ma.masked_invalid(style.shown(values)), 0.0)
     mesh = drawn.pcolormesh(rpm, torque, size, cmap=COLOURS, shading="nearest", vmin=0.0, rasterized=True)
     figure.colorbar(mesh, ax=drawn, label=_label(found, shown), pad=0.01)
@@ -64,9 +64,9 @@ def _label(found: xr.Dataset, shown: str) -> str:
 
 def _draw_several(axes: Axes, found: xr.Dataset) -> None:
     """Dots where more than one motion is stable: which of them is met depends on how one came there."""
-    several = (found.stable_solutions.transpose("torque", "speed").values > 1).astype(float)
+    several = (found.stable_solutions.transpose("mean_torque", "speed").values > 1).astype(float)
     if several.any() and min(several.shape) > 1:
-        rpm, torque = style.shown(found.speed), style.shown(found.torque)
+        rpm, torque = style.shown(found.speed), style.shown(found.mean_torque)
         dots = {"colors": "none", "hatches": ["..."]}
         axes.contourf(rpm, torque, several, levels=[0.5, 1.5], **dots)  # type: ignore[arg-type]
         axes.fill_between([], [], facecolor="none", edgecolor=style.INK, hatch="...", label="several stable motions")

@@ -27,7 +27,7 @@ class Response:
     """Forced response of one variant at its node to be kept quiet; everything in SI.
 
     ``orders`` complex acceleration orders (gear, speed, order) at full load and ``swing`` half its peak-to-peak;
-    ``map`` (gear, torque, speed) the same over the grid, ``within`` full load; ``full`` the dataset at full load;
+    ``map`` (gear, mean_torque, speed) the same over the grid, ``within`` full load; ``full`` the dataset at full load;
     ``curve`` (speed) the full-load torque [Nm]; ``idle`` the crankshaft's irregularity (load) at idle.
     """
 
@@ -105,7 +105,7 @@ class Comparison:
         """Ratio in all common cells (gear, torque, speed), whether both reach a cell, and the lower full-load curve."""
         mine, theirs = self.first.response, other.response
         assert mine is not None and theirs is not None
-        quotient = (mine.map / theirs.map).transpose("gear", "torque", "speed").rename("ratio")
+        quotient = (mine.map / theirs.map).transpose("gear", "mean_torque", "speed").rename("ratio")
         one, two = xr.align(mine.curve, theirs.curve)
         return quotient, mine.within & theirs.within, one.where(one <= two, two)
 
@@ -195,12 +195,12 @@ def _response(model: Model, speeds: Array, torques: Array) -> Response:
     full = full_load_response(model, np.linspace(speeds[0], speeds[-1], 141))
     orders = acceleration(full.angle.sel(node=node))
     parts = [swing(acceleration(grid.angle.sel(node=node, gear=[gear]))) for gear in grid.gear.values]
-    over = xr.concat(parts, "gear").transpose("gear", "torque", "speed").assign_attrs(parts[0].attrs)
+    over = xr.concat(parts, "gear").transpose("gear", "mean_torque", "speed").assign_attrs(parts[0].attrs)
     curve = dataset(
-        {"torque": (("speed",), full.mean_torque.values, "torque")},
+        {"mean_torque": (("speed",), full.mean_torque.values, "torque")},
         {"speed": (full.speed.values, "speed")},
         analysis="curve",
-    ).torque
+    ).mean_torque
     return Response(node, full, orders, swing(orders).transpose("gear", "speed"), grid, over, curve, _idle(model))
 
 
@@ -218,7 +218,7 @@ def _idle(model: Model) -> xr.DataArray | None:
     for load in loads.values():
         angle = full_load_response(model, [idle], [load], [model.top_gear]).angle.sel(node=node)
         found.append(float(irregularity(angle).squeeze()))
-    told = {"load": list(loads), "torque": ("load", list(loads.values()))}
+    told = {"load": list(loads), "mean_torque": ("load", list(loads.values()))}
     return xr.DataArray(found, dims="load", coords=told, attrs={"quantity": "irregularity", "units": "-"})
 
 
@@ -230,6 +230,6 @@ def _shown_gears(first: Variant, gears: Sequence[str]) -> tuple[str, ...]:
             raise ModelError(f"there is no gear '{gear}'", where="gears", remedy=nearest(gear, known))
     if gears or first.response is None:
         return tuple(gears) or (first.model.top_gear,)
-    largest = first.response.map.where(first.response.within).max(("torque", "speed"))
+    largest = first.response.map.where(first.response.within).max(("mean_torque", "speed"))
     worst = str(largest.gear.values[int(largest.argmax("gear"))])
     return tuple(dict.fromkeys((worst, first.model.top_gear)))

@@ -13,16 +13,24 @@ from torsional.report.labels import listed, told
 def largest(response: Response) -> Finding:
     """The largest swing of acceleration at or below full load, where it is, and the share of its strongest order."""
     value, at = peak(response)
-    place = f"{told(at['speed'], 'speed')} and {told(at['torque'], 'torque')}"
+    place = f"{told(at['speed'], 'speed')} and {told(at['mean_torque'], 'torque')}"
     gear = f" in gear {at['gear']}" if at["gear"] else ""
     text = f"The largest acceleration at {response.node.replace('_', ' ')} is {told(value, 'acceleration')} "
     text += f"(half peak-to-peak) at {place}{gear}."
-    here = response.grid.angle.sel(node=response.node, gear=at["gear"], speed=at["speed"], torque=at["torque"])
+    here = response.grid.angle.sel(
+        node=response.node, gear=at["gear"], speed=at["speed"], mean_torque=at["mean_torque"]
+    )
     orders = here * here.order**2
     strongest = float(here.order[int(abs(orders).argmax("order"))])
     share = float(order_share(orders, strongest))
     text += f" Order {strongest:g} has {_most(share)} of its mean square."
-    values = {"acceleration": value, "speed": at["speed"], "torque": at["torque"], "order": strongest, "share": share}
+    values = {
+        "acceleration": value,
+        "speed": at["speed"],
+        "mean_torque": at["mean_torque"],
+        "order": strongest,
+        "share": share,
+    }
     return Finding("largest", text, values)
 
 
@@ -39,7 +47,7 @@ def irregularities(response: Response) -> list[Finding]:
     if idle is None:
         return []
     values = {str(load): float(value) for load, value in zip(idle["load"].values, idle.values, strict=True)}
-    pairs = zip(idle.values, idle.torque.values, strict=True)
+    pairs = zip(idle.values, idle.mean_torque.values, strict=True)
     loads = listed([f"{100 * float(value):.2g} % at {told(float(torque), 'torque')}" for value, torque in pairs])
     return [Finding("irregularity", f"The crankshaft's cyclic irregularity at idle is {loads} of mean torque.", values)]
 

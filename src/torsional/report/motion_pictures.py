@@ -45,9 +45,9 @@ def region_table(motions: Motions) -> Table:
     """The speeds of the region at every mean torque."""
     inside = within(motions.region)
     rows = []
-    for row, torque in enumerate(inside.torque.values):
+    for row, torque in enumerate(inside.mean_torque.values):
         for columns, low, high in stretches(inside, row):
-            here = inside.isel(torque=row, speed=columns)
+            here = inside.isel(mean_torque=row, speed=columns)
             values = (float(here.amplitude.max()), "torque"), (float(here.acceleration.max()), "acceleration")
             ends = (f"{told(v, 'speed', 4).removesuffix(' rpm')}" for v in (low, high))
             rows.append((told(float(torque), "torque", 4), *ends, *(told(v, q) for v, q in values)))
@@ -60,7 +60,7 @@ def branch_picture(motions: Motions) -> Picture:
     """Branches at the mean torque of the largest sub-harmonic amplitude, and the motions at its speed."""
     branches, at = motions.branches, motions.at
     assert branches is not None and at is not None
-    place = f"{told(at['speed'], 'speed')}, {told(at['torque'], 'torque', 4)}{in_gear(motions.gear)}"
+    place = f"{told(at['speed'], 'speed')}, {told(at['mean_torque'], 'torque', 4)}{in_gear(motions.gear)}"
     figure = plots.plot_periodic(
         branches,
         [float(branches.attrs["main_order"]), motions.order, "swing"],
@@ -71,7 +71,9 @@ def branch_picture(motions: Motions) -> Picture:
         stiffness={motions.element: motions.stiffness},
         title=place,
     )
-    caption = f"Periodic motions at a mean torque of {told(at['torque'], 'torque', 4)}{in_gear(motions.gear)}: stable "
+    caption = (
+        f"Periodic motions at a mean torque of {told(at['mean_torque'], 'torque', 4)}{in_gear(motions.gear)}: stable "
+    )
     caption += f"ones as full lines, unstable ones dashed. Below, those at {told(at['speed'], 'speed')} over crank "
     caption += "angle with the stage that the spring is in, and the loops they make about its characteristic."
     return picture(

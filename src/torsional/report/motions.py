@@ -70,7 +70,7 @@ def motions_of(model: Model, speeds: tuple[float, float]) -> Motions | None:
     if at is None:
         return Motions(**found)
     values = np.append(np.linspace(low, high, BETWEEN), at["speed"])
-    return Motions(**found, branches=model_response(model, speeds, at["torque"], gear, at=values), at=at)
+    return Motions(**found, branches=model_response(model, speeds, at["mean_torque"], gear, at=values), at=at)
 
 
 def has_stages(law: Law | None) -> bool:
@@ -81,12 +81,12 @@ def has_stages(law: Law | None) -> bool:
 def _largest(region: xr.Dataset) -> dict[str, float] | None:
     """Where within full load the sub-harmonic amplitude is largest; None where there is none."""
     inside = within(region)
-    size: Array = inside.amplitude.transpose("torque", "speed").values
+    size: Array = inside.amplitude.transpose("mean_torque", "speed").values
     if not (size > 0).any():
         return None
     row, column = np.unravel_index(int(size.argmax()), size.shape)
     here = {"amplitude": float(size[row, column]), "acceleration": float(inside.acceleration.max())}
-    return {**here, "speed": float(inside.speed[column]), "torque": float(inside.torque[row])}
+    return {**here, "speed": float(inside.speed[column]), "mean_torque": float(inside.mean_torque[row])}
 
 
 def motion_findings(motions: Motions) -> list[Finding]:
@@ -100,14 +100,14 @@ def _sub_harmonic(motions: Motions, gear: str) -> Finding:
     if at is None:
         text = f"No stable vibration of {order}, half the main order, was found within full load{gear}."
         return Finding("sub-harmonic", text, {"amplitude": 0.0})
-    size = within(motions.region).amplitude.transpose("torque", "speed").values > 0
+    size = within(motions.region).amplitude.transpose("mean_torque", "speed").values > 0
     speeds = motions.region.speed.values[size.any(axis=0)][[0, -1]]
-    torques = motions.region.torque.values[size.any(axis=1)][[0, -1]]
+    torques = motions.region.mean_torque.values[size.any(axis=1)][[0, -1]]
     text = (
         f"At mean torques of {told(torques[0], 'torque')} to {told(torques[1], 'torque')} and speeds of "
         f"{told(speeds[0], 'speed')} to {told(speeds[1], 'speed')} it vibrates{gear} at {order}, every second ignition "
         f"alike: up to {told(at['amplitude'], 'torque')} (0-peak) in {motions.element.replace('_', ' ')}, at "
-        f"{told(at['speed'], 'speed')} and {told(at['torque'], 'torque')}, and up to "
+        f"{told(at['speed'], 'speed')} and {told(at['mean_torque'], 'torque')}, and up to "
         f"{told(at['acceleration'], 'acceleration')} at {motions.node.replace('_', ' ')}. No linear analysis shows it."
     )
     ends = {"speed from": speeds[0], "speed to": speeds[1], "torque from": torques[0], "torque to": torques[1]}

@@ -42,7 +42,7 @@ def _percent(share: float) -> str:
 
 def louder(ratio: xr.DataArray) -> list[Finding]:
     """Where the first variant vibrates more than the other: speeds, with the gears that share them."""
-    above = (ratio > 1).any("torque")
+    above = (ratio > 1).any("mean_torque")
     alike: dict[str, list[str]] = {}
     values = {}
     for gear in ratio.gear.values[above.any("speed").values]:

@@ -30,10 +30,10 @@ def engine_pictures(variant: Variant) -> list[Picture]:
     chosen = np.unique([curve.speed[0], curve.speed[int(curve.argmax("speed"))], curve.speed[int(0.75 * curve.size)]])
     size = engine.harmonics(chosen, variant.model.full_load(chosen), HALF_ORDERS).sum(axis=-2)
     harmonics = dataset(
-        {"torque": (("speed", "order"), size, "torque")},
+        {"engine_torque": (("speed", "order"), size, "torque")},
         {"speed": (chosen, "speed"), "order": (HALF_ORDERS, "engine_order")},
         analysis="engine orders",
-    ).torque
+    ).engine_torque
     main = float(np.abs(size[:, variant.main_order == HALF_ORDERS]).max())
     orders = picture(
         plots.plot_engine_orders(harmonics),
@@ -159,7 +159,7 @@ def cycle_pictures(comparison: Comparison) -> list[Picture]:
         here = response.grid.angle.sel(node=response.node, **at)
         orders = (-((here.order * here.speed) ** 2) * here).assign_attrs(response.orders.attrs)
         assert variant.main_order is not None
-        place = f"{told(at['speed'], 'speed')}, {told(at['torque'], 'torque')}{in_gear(str(at['gear']))}"
+        place = f"{told(at['speed'], 'speed')}, {told(at['mean_torque'], 'torque')}{in_gear(str(at['gear']))}"
         figure = plots.plot_cycle(orders, shown=[variant.main_order], title=f"{variant.label}, {place}")
         half, most = float(swing(orders)), float(bound(orders))
         caption = f"{variant.label} at its loudest point within full load ({place}): half the peak-to-peak is "

@@ -122,7 +122,7 @@ def conventions(comparison: Comparison) -> Section:
         "linearised, and told for springs with stages in the last gear.",
     ]
     for variant, response in comparison.answered:
-        speeds, torques, orders = response.map.speed, response.map.torque, response.orders.order
+        speeds, torques, orders = response.map.speed, response.map.mean_torque, response.orders.order
         texts.append(
             f"{variant.label}: maps of {speeds.size} speeds from {told(float(speeds[0]), 'speed', 4)} to "
             f"{told(float(speeds[-1]), 'speed', 4)} by {torques.size} mean torques up to "

@@ -35,11 +35,11 @@ def response_map(
 ) -> xr.Dataset:
     """Order response of a ``model`` over ``speed`` [rad/s] × mean ``torque`` [Nm] × ``gears``.
 
-    Each mean torque has its own equilibrium and tangent stiffnesses.  Dimensions (gear, torque, speed, order): complex
-    0-peak ``angle`` [rad] at ``nodes`` (default: the model's landmarks) and ``torque_order`` [Nm] of ``elements``
-    (default: absorber springs and clutch); ``travel`` (gear, torque, element) [rad], the mean twist;
-    ``within_full_load`` (torque, speed), false at speeds that the curve does not reach as well; ``status`` (gear,
-    torque, speed, order), 0 where solved, NaN stands where not.
+    Each mean torque has its own equilibrium and tangent stiffnesses.  Dimensions (gear, mean_torque, speed, order):
+    complex 0-peak ``angle`` [rad] at ``nodes`` (default: the model's landmarks) and ``torque`` [Nm] of ``elements``
+    (default: absorber springs and clutch); ``mean_twist`` (gear, mean_torque, element) [rad];
+    ``within_full_load`` (mean_torque, speed), false at speeds that the curve does not reach as well; ``status``
+    (gear, mean_torque, speed, order), 0 where solved, NaN stands where not.
     ``progress(done, total)`` is called after each gear.  Raises ModelError for a model without an engine.
     """
     engine = model.running_engine
@@ -54,20 +54,20 @@ def response_map(
     for done, gear in enumerate(names, 1):
         cells.append(_one_gear(model, gear, speeds, torques, n, loads, _places(model, nodes, elements)))
         progress(done, len(names))
-    angle, twist, travel, status, ratio = (np.stack(parts) for parts in zip(*cells, strict=True))
+    angle, torsion, mean, status, ratio = (np.stack(parts) for parts in zip(*cells, strict=True))
     chosen = _places(model, nodes, elements)
-    grid = ("gear", "torque", "speed", "order")
+    grid = ("gear", "mean_torque", "speed", "order")
     found = dataset(
         {
             "angle": ((*grid, "node"), angle, "angle"),
-            "torque_order": ((*grid, "element"), twist, "torque"),
-            "travel": (("gear", "torque", "element"), travel, "relative_angle"),
+            "torque": ((*grid, "element"), torsion, "torque"),
+            "mean_twist": (("gear", "mean_torque", "element"), mean, "relative_angle"),
             "status": (grid, status, ""),
-            "within_full_load": (("torque", "speed"), model.within_full_load(speeds, torques), ""),
+            "within_full_load": (("mean_torque", "speed"), model.within_full_load(speeds, torques), ""),
         },
         {
             "gear": (np.array(names), ""),
-            "torque": (torques, "torque"),
+            "mean_torque": (torques, "torque"),
             "speed": (speeds, "speed"),
             "order": (n, "engine_order"),
             "node": (np.array(chosen[0]), ""),

@@ -22,7 +22,7 @@ def boundary_curves(found: xr.Dataset) -> Iterator[tuple[str, Array]]:
     """
     if "boundary_point" not in found.sizes:
         return
-    points = np.stack([found.boundary_speed.values, found.boundary_torque.values], axis=1)
+    points = np.stack([found.boundary_speed.values, found.boundary_mean_torque.values], axis=1)
     curves, kinds = found.boundary_curve.values, found.boundary_kind.values
     start = 0
     for (curve, kind), run in groupby(zip(curves, kinds, strict=True)):
@@ -66,8 +66,8 @@ def stretches(found: xr.Dataset, row: int) -> Iterator[tuple[slice, float, float
 
     It ends where a boundary passes between two speeds of the map, else at the outermost speed.
     """
-    speed, met = found.speed.values, crossings(found, float(found.torque[row]))
-    for first, last in runs(found.amplitude.transpose("torque", "speed").values[row] > 0):
+    speed, met = found.speed.values, crossings(found, float(found.mean_torque[row]))
+    for first, last in runs(found.amplitude.transpose("mean_torque", "speed").values[row] > 0):
         before, after = speed[max(first - 1, 0)], speed[min(last + 1, len(speed) - 1)]
         below = met[(met >= before) & (met <= speed[first])]
         above = met[(met >= speed[last]) & (met <= after)]

@@ -12,6 +12,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.results import dataset
 from torsional.solvers.periodic import subharmonic_map
+from torsional.units import RPM
 
 MARGIN = 0.15
 """Room around a region that is looked at closely, in shares of its size."""
@@ -33,13 +34,13 @@ def sought_region(
 ) -> xr.Dataset:
     """`subharmonic_map` over ``speeds`` [rad/s] and mean ``torques`` [Nm], and ``closely`` again over what it found.
 
-    The second map has about as many speeds and torques, at round values.  ``within_full_load`` (torque, speed) is
+    The second map has about as many speeds and torques, at round values.  ``within_full_load`` (mean_torque, speed) is
     added: which cells the engine can reach, all of them without a full-load curve.  Raises ModelError as the map does.
     """
 
     def mapped(speeds: Array, torques: Array) -> xr.Dataset:
         found = subharmonic_map(model, speeds, torques, gear, element=element, node=node, progress=progress)
-        return found.assign(within_full_load=(("torque", "speed"), model.within_full_load(speeds, torques)))
+        return found.assign(within_full_load=(("mean_torque", "speed"), model.within_full_load(speeds, torques)))
 
     first = mapped(speeds, torques)
     closer = closer_grid(first) if closely else None
@@ -49,7 +50,7 @@ def sought_region(
 def closer_grid(found: xr.Dataset) -> tuple[Array, Array] | None:
     """Round speeds and mean torques over what a map has found and a margin around it; None where that is nothing."""
     axes = []
-    for dim, other, unit in (("speed", "torque", np.pi / 30), ("torque", "speed", 1.0)):
+    for dim, other, unit in (("speed", "mean_torque", RPM), ("mean_torque", "speed", 1.0)):
         values = found[dim].values
         here = np.append(values[(found.amplitude > 0).any(other).values], found[f"boundary_{dim}"].values)
         if not here.size:
@@ -80,13 +81,13 @@ def full_load_curve(model: Model, low: float, high: float) -> xr.DataArray | Non
         return None
     corners = [speed for speed in curve.speeds if low < speed < high]
     speeds = np.unique([*np.linspace(low, high, 200), *corners])
-    told = {"torque": (("speed",), curve(speeds), "torque")}
-    found: xr.DataArray = dataset(told, {"speed": (speeds, "speed")}, analysis="full load").torque
+    told = {"mean_torque": (("speed",), curve(speeds), "torque")}
+    found: xr.DataArray = dataset(told, {"speed": (speeds, "speed")}, analysis="full load").mean_torque
     return found
 
 
 @checked
 def within(found: xr.Dataset) -> xr.Dataset:
     """The same map with nothing in the cells above full load."""
-    over = [name for name, values in found.data_vars.items() if {"torque", "speed"} <= set(values.dims)]
+    over = [name for name, values in found.data_vars.items() if {"mean_torque", "speed"} <= set(values.dims)]
     return found.assign({name: found[name].where(found.within_full_load, 0) for name in over})

@@ -159,7 +159,7 @@ def test_the_region_of_the_shipped_truck_has_one_closed_boundary_over_speed_and_
     assert torque.max() == pytest.approx(1417.02, abs=0.05)
     grid = subharmonic_map(truck, np.linspace(700, 1000, 13) * RPM, np.linspace(850, 1450, 13), boundary=False)
     assert grid.solutions.values.min() >= 1
-    for row, value in enumerate(grid.torque.values):
+    for row, value in enumerate(grid.mean_torque.values):
         if abs(value - torque.min()) < 10 or abs(value - torque.max()) < 20:
             continue  # where the curve turns, straight lines between its points are too coarse
         inside = grid.amplitude.values[row] > 0

@@ -61,9 +61,9 @@ def hysteresis(
     normal loads follow the speed of the reference node and the springs.  What acts only on one side of the two nodes,
     or against the ground, is left out.  ``samples`` steps a cycle, of backward Euler; ``progress`` is told (done, all).
 
-    Gives over ``speed``, ``sweep`` and ``cycle`` ("first", "closed"): ``torque`` over ``sample``, angles of nodes
-    relative to ``held``, twists, torques and normal loads of elements; and of the closed loop its ``loss``,
-    ``stiffness`` (chord between the turning points), ``harmonic_stiffness`` and ``loss_factor`` as
+    Gives over ``speed``, ``sweep`` and ``cycle`` ("first", "closed"): ``drive_torque`` at ``turned`` over ``sample``,
+    ``angle`` of nodes relative to ``held``, ``twist``, ``torque`` and ``normal_load`` of elements; and of the closed
+    loop its ``loss``, ``stiffness`` (chord between the turning points), ``harmonic_stiffness`` and ``loss_factor`` as
     `torsional.numerics.loops` defines them, the loss of each element, and which rubbing elements slide.
     Raises ModelError for nodes that turn at different speeds or with nothing between, sweeps and rates that are not
     positive, and where no balance is found.
@@ -220,11 +220,11 @@ def _told(
     slides = _slides(c, twist[:, :, 1], sweeps)
     return dataset(
         {
-            "torque": (every, torque, "torque"),
-            "drive": (("sweep", "sample"), drive, "relative_angle"),
+            "drive_torque": (every, torque, "torque"),
+            "drive_angle": (("sweep", "sample"), drive, "relative_angle"),
             "angle": ((*every, "node"), place @ bench.places.T, "angle"),
-            "element_twist": ((*every, "element"), twist, "relative_angle"),
-            "element_torque": ((*every, "element"), element_torque, "torque"),
+            "twist": ((*every, "element"), twist, "relative_angle"),
+            "torque": ((*every, "element"), element_torque, "torque"),
             "normal_load": ((*every, "element"), np.where([bool(x) for x in c.loads], load, np.nan), "force"),
             "loss": (grid, loss, "energy"),
             "stiffness": (grid, stiffness, "stiffness"),

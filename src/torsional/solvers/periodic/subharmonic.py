@@ -45,15 +45,15 @@ def subharmonic_map(
     boundary: bool = True,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> xr.Dataset:
-    """Largest stable vibration at half the engine's order over ``torque`` [Nm] and ``speed`` [rad/s], and its boundary.
+    """Largest stable vibration at half the engine's order over mean ``torque`` [Nm] and ``speed`` [rad/s].
 
-    Every branch at each mean torque is followed and read at the speeds.  (torque, speed): ``amplitude`` [Nm] of the
-    torque in ``element`` (default: the first connection with a law), ``twist_amplitude`` [rad] there and
+    Every branch at each mean torque is followed and read at the speeds.  (mean_torque, speed): ``amplitude`` [Nm] of
+    the torque in ``element`` (default: the first connection with a law), ``twist_amplitude`` [rad] there and
     ``acceleration`` [rad/s²] at ``node`` (default: the landmark to be kept quiet), each 0-peak of the sub-harmonic
     order and zero where there is none; ``stable_solutions``, ``solutions`` how many there are.  ``boundary_speed``,
-    ``boundary_torque`` (boundary_point), with ``boundary_kind`` and ``boundary_curve``: curves of period doublings, and
-    of folds of the doubled branches.  ``progress(done, total)`` is called after each mean torque.  Raises ModelError as
-    `model_response` does.
+    ``boundary_mean_torque`` (boundary_point), with ``boundary_kind`` and ``boundary_curve``: curves of period
+    doublings, and of folds of the doubled branches.  ``progress(done, total)`` is called after each mean torque.
+    Raises ModelError as `model_response` does.
     """
     speeds, torques = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speed, torque))
     for name, values in (("speed", speeds), ("torque", torques)):
@@ -115,7 +115,7 @@ class _Table:
 
     def presented(self, curves: list[tuple[str, Array]], element: str, node: str, order: float) -> xr.Dataset:
         """The Dataset."""
-        over = ("torque", "speed")
+        over = ("mean_torque", "speed")
         return dataset(
             {
                 "amplitude": (over, self.amplitude, "torque"),
@@ -124,8 +124,8 @@ class _Table:
                 "solutions": (over, self.solutions, ""),
                 "stable_solutions": (over, self.stable, ""),
             }
-            | curve_variables(curves, "torque", "torque"),
-            {"torque": (self.torques, "torque"), "speed": (self.speeds, "speed")},
+            | curve_variables(curves, "mean_torque", "torque"),
+            {"mean_torque": (self.torques, "torque"), "speed": (self.speeds, "speed")},
             analysis="subharmonic map",
             amplitude="0-peak of the sub-harmonic order",
             order=order,

@@ -82,7 +82,7 @@ def _friction(problem: Problem, told: Marched, elements: IntArray) -> tuple[dict
         variables["memory"] = (("time", "friction"), told.memory[:, remembering], "relative_angle")
         coordinates["friction"] = (names[remembering], "")
     if loaded.size:
-        variables["normal_load"] = (("time", "loaded"), told.load[:, loaded], "")
+        variables["normal_load"] = (("time", "loaded"), told.load[:, loaded], "force")
         coordinates["loaded"] = (names[loaded], "")
     rubs = np.array([i for i in elements if _rubs(c.laws[i])], dtype=np.int64)
     if rubs.size:

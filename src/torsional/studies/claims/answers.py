@@ -17,7 +17,7 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import operated
@@ -136,19 +136,19 @@ def rising(values: ArrayLike) -> bool:
 def curves(id: str, speed: Array, quantity: str, **values: ArrayLike) -> xr.Dataset:
     """Curves over speed, one variable each, for the pictures of a claim."""
     told = {name: (("speed",), np.asarray(value), quantity) for name, value in values.items()}
-    return dataset(told, {"speed": (speed, "speed")}, analysis=f"claim {id}", amplitude="half peak-to-peak")
+    return labelled(told, {"speed": (speed, "speed")}, analysis=f"claim {id}", amplitude="half peak-to-peak")
 
 
 def sweep(id: str, over: str, at: ArrayLike, quantity: str, **values: tuple[ArrayLike, str]) -> xr.Dataset:
     """Values over a swept parameter ``over`` of some ``quantity``, one variable each with its own quantity."""
     told = {name: ((over,), np.asarray(value), kind) for name, (value, kind) in values.items()}
-    return dataset(told, {over: (np.asarray(at, dtype=float), quantity)}, analysis=f"claim {id}")
+    return labelled(told, {over: (np.asarray(at, dtype=float), quantity)}, analysis=f"claim {id}")
 
 
 def by_gear_dataset(id: str, model: Model, **values: tuple[ArrayLike, str]) -> xr.Dataset:
     """Values for every gear, one variable each with its quantity."""
     told = {name: (("gear",), np.asarray(value), kind) for name, (value, kind) in values.items()}
-    return dataset(told, {"gear": (np.array(model.gear_names), "")}, analysis=f"claim {id}", model=model.name)
+    return labelled(told, {"gear": (np.array(model.gear_names), "")}, analysis=f"claim {id}", model=model.name)
 
 
 def floats(values: ArrayLike) -> tuple[float, ...]:

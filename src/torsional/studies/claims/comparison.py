@@ -13,7 +13,7 @@ from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.solvers.map import response_map
 from torsional.stamps import GROUND
 from torsional.studies.claims.answers import (
@@ -69,9 +69,9 @@ def a10(trucks: Trucks) -> Finding:
         f"clutch damping × {LIGHT:g}: median ratio [-]": float(light.median()),
         f"clutch damping × {LIGHT:g}: cells above 1": _named(light),
     }
-    data = dataset(
-        {"ratio": (("gear", "torque", "speed"), ratio.transpose("gear", "torque", "speed").values, "ratio")},
-        {"gear": (ratio.gear.values, ""), "torque": (torque, "torque"), "speed": (speed, "speed")},
+    data = labelled(
+        {"ratio": (("gear", "mean_torque", "speed"), ratio.transpose("gear", "mean_torque", "speed").values, "ratio")},
+        {"gear": (ratio.gear.values, ""), "mean_torque": (torque, "torque"), "speed": (speed, "speed")},
         analysis="claim A10",
     )
     condition = "acceleration at the gearbox input inside the full-load curve, all gears; half peak-to-peak"
@@ -95,7 +95,7 @@ def _named(ratio: xr.DataArray) -> tuple[str, ...]:
     """Gears with ratios above 1 and the speeds between which they occur."""
     told = []
     for gear in ratio.gear.values:
-        above = ratio.speed.values[(ratio.sel(gear=gear) > 1).any("torque").values]
+        above = ratio.speed.values[(ratio.sel(gear=gear) > 1).any("mean_torque").values]
         told += [f"gear {gear}: {span(above)}"] if above.size else []
     return tuple(told)
 
@@ -104,7 +104,7 @@ def _resonant(amplitude: xr.DataArray) -> tuple[str, ...]:
     """Gears in which the amplitude over speed at half of the peak torque has a maximum above idle, and its speed."""
     found = []
     for gear in amplitude.gear.values:
-        curve = amplitude.sel(gear=gear).isel(torque=amplitude.torque.size // 2).values
+        curve = amplitude.sel(gear=gear).isel(mean_torque=amplitude.mean_torque.size // 2).values
         inner = np.flatnonzero((curve[1:-1] > curve[:-2]) & (curve[1:-1] > curve[2:])) + 1
         if inner.size:
             best = inner[curve[inner].argmax()]

@@ -7,7 +7,7 @@ import numpy as np
 from torsional.files.scenario import load_scenario
 from torsional.laws import Hinges
 from torsional.model import Model
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.studies.claims.answers import floats
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, hinged, replaced, stiffness
@@ -65,7 +65,7 @@ def g3(trucks: Trucks) -> Finding:
     for stop, row, count in zip(STOPS, peaks, contacts, strict=True):
         figures[f"stop at {stop:g} Nm: peak torque of the DMF [Nm]"] = floats(row)
         figures[f"stop at {stop:g} Nm: contacts"] = floats(count)
-    drawn = dataset(
+    drawn = labelled(
         {"torque": (("stop", "time"), peaks, "torque")},
         {"stop": (np.array(STOPS), "torque"), "time": (np.array(TIMES), "time")},
         analysis="claim G3",

@@ -14,7 +14,7 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.piecewise_motion import PiecewiseMotion, Trajectory
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.stability import stage_bases
@@ -216,4 +216,4 @@ def _reason(region: dict[float, list[float]]) -> str:
 def _drawn(idle: Idle, before: Trajectory, after: Trajectory | None) -> xr.Dataset:
     told = {"before": before} | ({"after": after} if after is not None else {})
     values = {name: (("time",), idle.twist(motion), "relative_angle") for name, motion in told.items()}
-    return dataset(values, {"time": (before.times, "time")}, analysis="claim B6")
+    return labelled(values, {"time": (before.times, "time")}, analysis="claim B6")

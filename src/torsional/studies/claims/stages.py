@@ -12,7 +12,7 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.solvers.periodic import model_response
 from torsional.studies.claims.answers import floats, span
 from torsional.studies.claims.base import Figure, Finding, claim
@@ -142,6 +142,6 @@ def _mapped(tables: dict[str, Array]) -> xr.Dataset:
     values: dict[str, Any] = {}
     for name, found in tables.items():
         plain = name.replace("-", "_")
-        values[f"amplitude_{plain}"] = (("torque", "speed"), found[:, 0], "acceleration")
-        values[f"twist_{plain}"] = (("torque", "speed"), found[:, 1], "ratio")
-    return dataset(values, {"torque": (TORQUES, "torque"), "speed": (SPEEDS, "speed")}, analysis="claim A12")
+        values[f"amplitude_{plain}"] = (("mean_torque", "speed"), found[:, 0], "acceleration")
+        values[f"twist_{plain}"] = (("mean_torque", "speed"), found[:, 1], "ratio")
+    return labelled(values, {"mean_torque": (TORQUES, "torque"), "speed": (SPEEDS, "speed")}, analysis="claim A12")

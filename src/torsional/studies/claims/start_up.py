@@ -11,7 +11,7 @@ import numpy as np
 from torsional.files.scenario import load_scenario
 from torsional.laws import Hinges
 from torsional.model import Model
-from torsional.results import dataset
+from torsional.results import labelled
 from torsional.solvers.modal import modal
 from torsional.solvers.transient.drives import Governor
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -144,7 +144,7 @@ def g2(trucks: Trucks) -> Finding:
     helps = {name: row[-1].angle < row[0].angle for name, row in found.items()}
     others = all(helped for name, helped in helps.items() if name != STIFFNESS)
     angles_by = {"angle": (("time",), np.deg2rad([each.angle for each in found[RAMP]]), "relative_angle")}
-    drawn = dataset(angles_by, {"time": (np.array(RAMPS), "time")}, analysis="claim G2")
+    drawn = labelled(angles_by, {"time": (np.array(RAMPS), "time")}, analysis="claim G2")
     reason = "" if all(helps.values()) else _reason(helps)
     proviso = PROVISO if others and passed_on and not helps[STIFFNESS] else ""
     good = others and (helps[STIFFNESS] or passed_on)
