@@ -21,8 +21,9 @@ def test_gears_by_name(truck: tv.Model) -> None:
     assert truck.chosen_gears() == [str(n) for n in range(1, 13)]
     assert truck.chosen_gears([3, "11"]) == ["3", "11"]
     assert truck.powertrain("").speed_ratio("vehicle") == truck.powertrain(12).speed_ratio("vehicle")
-    with pytest.raises(ModelError, match="no gear '13'"):
-        truck.chosen_gears([13])
+    for asked in (lambda: truck.chosen_gears([13]), lambda: tv.steady_map(truck, [100.0], [500.0], [13])):
+        with pytest.raises(ModelError, match="no gear '13'"):
+            asked()
 
 
 def test_below_the_full_load_curve(truck: tv.Model) -> None:

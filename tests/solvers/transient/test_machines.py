@@ -163,7 +163,7 @@ def test_a_run_that_cannot_be_believed_is_refused() -> None:
 def test_a_map_over_torque_and_speed() -> None:
     model, system = truck()
     speeds, torques = np.array([800.0, 880.0]) * RPM, [1000.0, 1200.0]
-    found = steady_map(model, speeds, torques, highest_order=18.0, step=2e-4)
+    found = steady_map(model, speeds, torques, ["12"], highest_order=18.0, step=2e-4)
     assert found.twist.dims == ("gear", "mean_torque", "speed", "order", "element")
     assert found.periods.values[0].tolist() == [[2, 2], [1, 2]]
     alone = steady_state(system, engine_drive(model, speeds[1], 1000.0), hold="vehicle", parts=2, step=2e-4)

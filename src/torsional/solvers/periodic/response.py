@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from torsional.arguments import checked, checked_fields
 from torsional.engine import Excitation
+from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.numerics.continuation import Settings
@@ -24,9 +25,6 @@ from torsional.solvers.periodic.problem import HarmonicProblem, Setting
 from torsional.solvers.periodic.refined import refined
 from torsional.solvers.periodic.varied import VariedProblem
 from torsional.system import System
-
-HIGHEST_ORDER = 18.0
-"""Highest order of the harmonics that are taken by default; those of a stage's torque fall with its square."""
 
 SIZED = 5
 """Values of the parameter at which the size of the angles is estimated."""

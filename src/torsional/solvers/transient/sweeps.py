@@ -15,6 +15,7 @@ from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
+from torsional.results import of_model
 from torsional.solvers.periodic.machine import checked_engine, common_orders
 from torsional.solvers.transient.problem import Drives
 from torsional.solvers.transient.steady import steady_state
@@ -122,25 +123,26 @@ def steady_map(
     base_order: float | None = None,
     **settings: Any,
 ) -> xr.Dataset:
-    """Steady motions in time of a ``model`` over ``gears``, mean engine ``torques`` [Nm] and ``speeds`` [rad/s].
+    """Steady motions in time of a ``model`` over ``gears`` (default: all), mean engine ``torques`` [Nm] and ``speeds``
+    [rad/s].
 
     Absorbers that have details are taken in detail.  Along the speeds each run begins where the one before it ended,
     at the first with the linear response.  Dimensions (gear, mean_torque, speed, order, node or element), beside
     them ``kind``, ``status`` and ``periods``.
     Raises ModelError for a model without an engine.
     """
-    names = [str(gear) for gear in gears] if gears is not None else [model.top_gear]
+    names = model.chosen_gears(gears)
     at, loads = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speeds, torques))
     hold = model.landmarks.load
     rows = []
     for name in names:
-        system = assemble(model.detailed().powertrain(name or None))
+        system = assemble(model.detailed().powertrain(name))
         own = [_along(model, system, at, float(torque), hold, highest_order, base_order, settings) for torque in loads]
         rows.append(xr.concat(own, "torque_value", **_JOIN))
     found = xr.concat(rows, "gear", **_JOIN).rename(value="speed_value")
     found = found.drop_vars("speed", errors="ignore").rename(speed_value="speed", torque_value="mean_torque")
     found = found.assign_coords(gear=names, mean_torque=loads, speed=at)
-    return found.assign_attrs(analysis="steady map in time", model=model.name, model_hash=model.hash)
+    return of_model(found.assign_attrs(analysis="steady map in time"), model)
 
 
 def _along(

@@ -14,6 +14,7 @@ from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Scenario
 from torsional.laws import Law
 from torsional.model import Model
+from torsional.results import of_model
 from torsional.solvers.transient.run import Progress
 from torsional.solvers.transient.speed_profile import as_speed
 from torsional.studies.scenarios.figures import phased, read_off, scheduled
@@ -44,7 +45,7 @@ def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | No
     """
     block = load_scenario(scenario) if isinstance(scenario, str) else scenario
     run = run_plan(planned(block, model), progress)
-    return run.assign_attrs(scenario=block.scenario, model=model.name, model_hash=model.hash)
+    return of_model(run.assign_attrs(scenario=block.scenario), model)
 
 
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
