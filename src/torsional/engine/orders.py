@@ -31,7 +31,7 @@ HALF_ORDERS = np.arange(0.5, 12.5, 0.5)
 """Orders of analyses in the frequency domain where none are asked for."""
 
 HIGHEST_ORDER = 18.0
-"""Highest order of periodic and steady motions where none is asked for; those of a stage's torque fall with its square."""
+"""Highest order of steady motions where none is asked for; those of a stage's torque fall with its square."""
 
 
 def crank_angle_grid(samples: int = SAMPLES) -> FloatArray:
