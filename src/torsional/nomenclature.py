@@ -131,7 +131,8 @@ CANONICAL: dict[str, dict[str, float]] = {
     "density": {"kg/m3": 1.0, "g/cm3": 1e3, "kg/dm3": 1e3, "kg/l": 1e3, "t/m3": 1e3},
     "force": _FORCE,
     "spring rate": _per(_FORCE, {"m": 1.0, "mm": 1e-3}),
-    "pressure": {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm2": 1e6},
+    "pressure": {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm2": 1e6}
+    | {"psi": 6894.757293168361},
     "temperature": {"K": 1.0},
     "frequency": {"Hz": 1.0, "kHz": 1e3},
     "rate": {"1/s": 1.0},

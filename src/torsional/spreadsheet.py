@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from torsional.errors import ModelError
+from torsional.tables import heading
+from torsional.units import RPM
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,7 +69,7 @@ def _coordinates(data: xr.Dataset, rows: Sequence[str]) -> Iterator[tuple[str, l
 def _in_rpm(name: str, values: xr.DataArray) -> Iterator[tuple[str, list[object]]]:
     """A second column for speeds."""
     if values.attrs.get("quantity") == "speed":
-        yield f"{name} [rpm]", (values.values.ravel() * (30 / math.pi)).tolist()
+        yield f"{name} [rpm]", (values.values.ravel() / RPM).tolist()
 
 
 def _grid(data: xr.Dataset, rows: Sequence[str]) -> xr.DataArray:
@@ -100,5 +102,4 @@ def _columns(label: str, values: xr.DataArray) -> Iterator[tuple[str, list[objec
 
 
 def _heading(label: str, values: xr.DataArray) -> str:
-    unit = values.attrs.get("units", "-")
-    return label if unit == "-" else f"{label} [{unit}]"
+    return heading(label, values.attrs.get("units", "-"))

@@ -26,6 +26,7 @@ __all__ = [
     "read_range",
     "show",
     "show_speed",
+    "unit_factor",
 ]
 
 RPM = math.pi / 30
@@ -153,6 +154,18 @@ def read(value: object, quantity: str, where: str = "") -> float:
         return _finite(float(value), where, value)
     except OverflowError:
         raise ModelError("a number this large is not read", where=where) from None
+
+
+def unit_factor(unit: str, kind: str) -> float | None:
+    """The factor to SI of a unit of that kind, in capitals or not, as headers of measurements have it; None: no unit.
+
+    >>> unit_factor("BAR", "pressure"), unit_factor("s", "pressure")
+    (100000.0, None)
+    """
+    key = _unit_key(unit)
+    if key in UNITS[kind]:
+        return UNITS[kind][key]
+    return next((factor for known, factor in UNITS[kind].items() if known.casefold() == key.casefold()), None)
 
 
 def convert(value: float, from_unit: str, to_unit: str) -> float:

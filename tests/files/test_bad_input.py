@@ -888,16 +888,16 @@ CURVES: list[tuple[str, str | bytes | None, str]] = [
         "one column",
         "speed [rpm]\n600\n700\n",
         (
-            "engine.full_load (line ?): in 'truck13_full_load.csv': the header names one column only; found "
-            "'speed [rpm]'; separate columns by commas and write decimal points"
+            "engine.full_load (line ?): in 'truck13_full_load.csv': header: the column 'torque' is "
+            "missing; found 'speed [rpm]'"
         ),
     ),
     (
-        "semicolons",
-        "speed [rpm];torque [Nm]\n600;1\n700;2\n",
+        "decimal commas",
+        "speed [rpm];torque [Nm]\n600;1,5\n700;2\n",
         (
-            "engine.full_load (line ?): in 'truck13_full_load.csv': the header names one column only; found "
-            "'speed [rpm];torque [Nm]'; separate columns by commas and write decimal points"
+            "engine.full_load (line ?): in 'truck13_full_load.csv': row 1 (line 2), column 'torque': a plain "
+            "number is wanted; found '1,5'; write decimals with a point"
         ),
     ),
     (
@@ -929,7 +929,7 @@ CURVES: list[tuple[str, str | bytes | None, str]] = [
         HEAD + "600,=1+1\n700,2\n",
         (
             "engine.full_load (line ?): in 'truck13_full_load.csv': row 1 (line 2), column 'torque': a plain "
-            "number is wanted; found '=1+1'"
+            "number is wanted; found '=1+1'; write values, not formulas"
         ),
     ),
     (

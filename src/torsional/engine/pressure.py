@@ -13,7 +13,7 @@ from torsional.arguments import checked, checked_fields
 from torsional.engine.cylinder import Cylinder
 from torsional.engine.gas import PressureShapes
 from torsional.engine.orders import CYCLE, SAMPLES, FloatArray, crank_angle_grid, periodic_spline
-from torsional.engine.trace_file import read_table
+from torsional.engine.trace_file import pressure_table, text_of
 from torsional.errors import ModelError
 
 COARSEST = np.radians(6.0)
@@ -56,29 +56,38 @@ class PressureTrace:
     @classmethod
     @checked
     def from_csv(
-        cls, source: str | Path, *, speed: float | None = None, offset: float = 0.0, own_angle: bool = False
+        cls, path: str | Path, *, speed: float | None = None, offset: float = 0.0, own_angle: bool = False
     ) -> PressureTrace:
-        """Read a table of crank angle or time and pressure; see ``trace_file.read_table`` for its form.
+        """Read a file as `from_text` reads its text; ModelError names the file."""
+        text = text_of(path)
+        try:
+            return cls.from_text(text, speed=speed, offset=offset, own_angle=own_angle)
+        except ModelError as error:
+            raise error.located(file=str(path)) from None
+
+    @classmethod
+    @checked
+    def from_text(
+        cls, text: str, *, speed: float | None = None, offset: float = 0.0, own_angle: bool = False
+    ) -> PressureTrace:
+        """Read a table of crank angle or time and pressure; see ``trace_file.pressure_table`` for its form.
 
         ``speed`` [rad/s] turns time into crank angle; ``offset`` [rad] is added to the angle so that 0 becomes the
         firing top dead centre.  Raises ModelError for a malformed table or record.
 
         >>> rows = "\\n".join(f"{i},{2 + (i < 20 or i > 700)}" for i in range(720))
-        >>> PressureTrace.from_csv("crank_angle [deg],pressure [bar]\\n" + rows).pressure[0, 0].round().item()
+        >>> PressureTrace.from_text("crank_angle [deg],pressure [bar]\\n" + rows).pressure[0, 0].round().item()
         300000.0
         """
-        table = read_table(source)
+        table = pressure_table(text)
         if table.angle is not None:
             angle = table.angle
         elif speed is None:
-            raise ModelError("a record over time needs the engine speed", where=table.name, remedy="give speed [rad/s]")
+            raise ModelError("a record over time needs the engine speed", where="speed", remedy="give speed [rad/s]")
         else:
             assert table.time is not None
             angle = table.time * checks.positive(speed, "speed", "speed")
-        try:
-            return cls.sampled(angle, table.pressure, offset=offset, own_angle=own_angle)
-        except ModelError as error:
-            raise error.located(file=table.name) from None
+        return cls.sampled(angle, table.pressure, offset=offset, own_angle=own_angle)
 
     @classmethod
     @checked

@@ -27,7 +27,7 @@ from torsional.files.schema.engine import (
     WiebeBlock,
 )
 from torsional.files.schema.fields import Block
-from torsional.files.tables import parse_table
+from torsional.tables import parse_table
 from torsional.units import quoted
 
 _RENAMED = {"heat_spread": "cylinder_spread", "load table": "mean_effective_pressure", "pressure": "pressure_trace"}
@@ -122,8 +122,7 @@ def _in_file(file: str | None, path: str) -> Iterator[None]:
     try:
         yield
     except ModelError as error:
-        place = error.where.removeprefix("pressure text").lstrip(", ")
-        problem = ": ".join(part for part in (f"in {quoted(file or 'text')}", place, error.problem) if part)
+        problem = ": ".join(part for part in (f"in {quoted(file or 'text')}", error.where, error.problem) if part)
         told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
         raise ModelError(problem, where=path, **told) from None
 
@@ -131,7 +130,7 @@ def _in_file(file: str | None, path: str) -> Iterator[None]:
 def _trace(block: PressureTraceBlock) -> PressureTrace:
     text = embedded_text(block.file, block.text, "engine.pressure_trace")
     with _in_file(block.file, "engine.pressure_trace"):
-        return PressureTrace.from_csv(text + "\n", speed=block.speed, offset=block.offset, own_angle=block.own_angle)
+        return PressureTrace.from_text(text, speed=block.speed, offset=block.offset, own_angle=block.own_angle)
 
 
 def _full_load(block: FullLoadBlock) -> FullLoad:
