@@ -7,6 +7,7 @@ semicolon or tab that it holds most of; decimals take a point.  Lines may be bla
 from __future__ import annotations
 
 import csv
+import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -24,7 +25,6 @@ LONGEST = 500_000
 
 _HEADER = re.compile(r"([^\[\]()]+?)\s*(?:[\[(]([^\[\]()]*)[\])])?")
 _FOREIGN = re.compile(r"[^0-9eE+\-.\s]")
-_COMMENT = re.compile(r"#.*")
 _HEADER_COMMENT = re.compile(r"#(?!\d).*")  # but "pressure #1" is a name
 
 
@@ -63,7 +63,7 @@ def cells(text: str) -> Cells:
         raise ModelError("a table has a header and at least two rows", found=f"{max(len(held) - 1, 0)} rows")
     separator = max(",;\t", key=held[0][1].count)
     try:
-        kept = [_HEADER_COMMENT.sub("", held[0][1]), *(_COMMENT.sub("", line) for _, line in held[1:])]
+        kept = [_HEADER_COMMENT.sub("", held[0][1]), *(line.partition("#")[0] for _, line in held[1:])]
         rows = list(csv.reader(kept, delimiter=separator))
     except csv.Error as error:
         raise ModelError("the table cannot be read", found=str(error)) from None
@@ -74,7 +74,7 @@ def numbers(table: Cells, names: Sequence[str]) -> NDArray[np.float64]:
     """The numbers (columns, rows) in the header's units, all finite; ModelError names line and column of the first
     that is none."""
     # float() alone would read 1_000, nan and infinity; with those letters shut out its grammar is ours
-    plain = not any(_FOREIGN.search(cell) for row in table.rows for cell in row)
+    plain = not _FOREIGN.search(" ".join(itertools.chain.from_iterable(table.rows)))
     try:
         found = np.array(table.rows, dtype=float).T
         if plain and found.shape == (len(names), len(table.rows)) and np.isfinite(found).all():
