@@ -105,6 +105,7 @@ from .solvers.transient import (
     SpeedProfile as SpeedProfile,
     State as State,
     TorqueHistory as TorqueHistory,
+    certified as certified,
     crank_angle_of as crank_angle_of,
     engine_drive as engine_drive,
     orders_in_time as orders_in_time,

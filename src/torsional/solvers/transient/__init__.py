@@ -1,5 +1,6 @@
 """Motion in time: a system and what drives it as arrays, stepped."""
 
+from torsional.solvers.transient.certificate import Certificate, certified
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.drives import Governor, OrderTorques, TorqueHistory
 from torsional.solvers.transient.events import stage_changes
@@ -11,12 +12,14 @@ from torsional.solvers.transient.steady import steady_state
 from torsional.solvers.transient.sweeps import engine_drive, steady_map, swept
 
 __all__ = [
+    "Certificate",
     "CylinderTorques",
     "Governor",
     "OrderTorques",
     "SpeedProfile",
     "State",
     "TorqueHistory",
+    "certified",
     "crank_angle_of",
     "engine_drive",
     "orders_in_time",

@@ -31,7 +31,7 @@ _MOST = 4
 
 def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str]:
     """What is to be said, in words: of contacts ``guarded`` by dampers, ``damped`` where that is felt, and so on."""
-    if accuracy.method == "explicit":
+    if accuracy.method in ("explicit", "exact"):
         return {}
     said = _unresolved(problem, accuracy.step) | _restless(problem, accuracy.step)
     names = problem.system.connections.names

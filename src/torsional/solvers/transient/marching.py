@@ -16,10 +16,11 @@ from torsional.numerics.element_torques import element_torques
 from torsional.numerics.explicit_march import explicit_march
 from torsional.numerics.stepping import Count, Entry, Settings, Status, begin, march
 from torsional.numerics.stepping_state import State as Standing
+from torsional.solvers.transient.exactly import exact_motion
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import State
 
-METHODS = ("chung_hulbert", "hht", "bossak", "newmark", "explicit")
+METHODS = ("chung_hulbert", "hht", "bossak", "newmark", "explicit", "exact")
 LEDGER = ("kinetic", "strain", "sources", "dampers", "contacts", "friction", "method")
 """Shares of the energy [J]: what kinetic and strain gain is sources − dampers − contacts − friction + method."""
 _ENTRIES = [Entry.KINETIC, Entry.STRAIN, Entry.WORKED, Entry.DAMPED, Entry.STRUCK, Entry.RUBBED, Entry.MADE]
@@ -60,7 +61,7 @@ class Accuracy:
     @property
     def family(self) -> AlphaMethod:
         """The member of the generalised-α family; that of the explicit integrator is not asked."""
-        if self.method in ("newmark", "explicit"):
+        if self.method in ("newmark", "explicit", "exact"):
             return AlphaMethod.newmark()
         found: AlphaMethod = getattr(AlphaMethod, self.method)(self.spectral_radius)
         return found
@@ -96,6 +97,8 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
     kept = np.unique(np.append(np.arange(0, steps, every), steps))
     if accuracy.method == "explicit":
         return _explicit(problem, state, state.time + accuracy.step * kept, accuracy)
+    if accuracy.method == "exact":
+        return _exact(problem, state, state.time + accuracy.step * kept)
     plan, own = problem.plan, _standing(problem, state, accuracy.step)
     told = march(plan, accuracy.family, accuracy.step, steps, own, at=kept, settings=accuracy.settings)
     records, count = told.records, len(state.memory)
@@ -211,3 +214,13 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         iterations=0,
         status=COMPLETE,
     )
+
+
+def _exact(problem: Problem, state: State, times: Array) -> Marched:
+    """The same from event to event, to rounding, without a ledger."""
+    run = exact_motion(problem, state, times)
+    none, speed = np.zeros_like(run.torque), problem.start_speed
+    end = State(float(times[-1]), run.angles[-1], run.rates[-1], none[-1], np.zeros(0), speed)
+    unbooked = np.full((len(times), len(LEDGER)), np.nan)
+    motion = (run.angles, run.rates, run.accelerations, run.torque)
+    return Marched(times, *motion, none, none, none, unbooked, end, run.events, 0, COMPLETE)

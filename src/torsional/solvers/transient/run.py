@@ -68,7 +68,8 @@ def transient(
     follow.
     ``reference``: node whose speed counts for centrifugal forces; with ``reference_time`` [s] the dampers to ground
     follow it.  ``step`` [s], ``method`` (chung_hulbert, hht, bossak, newmark; "explicit" chooses its steps by
-    ``tolerance``), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
+    ``tolerance``; "exact" goes from event to event, to rounding, in lines of linear parts, hinges and contacts under
+    harmonic torques), ``spectral_radius`` ρ∞; with an ``angle_error`` [rad] steps are halved and doubled so that none
     makes more of it.  ``output``: interval [s] of the samples (default every step, up to 100 000 of them), ``keep``:
     names of the nodes and elements in the result (default all).  ``progress`` is called now and then.
 

@@ -1,0 +1,106 @@
+"""Time steps with contacts against the complementarity problem that they solve."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from torsional.arguments import checked
+from torsional.errors import ModelError
+from torsional.numerics.complementarity import violation
+from torsional.numerics.complementarity_step import OneSided, Step, step_problem
+from torsional.numerics.stepping import Count
+from torsional.numerics.stepping_plan import PACE
+from torsional.numerics.stepping_state import EXTERNAL, OWN, Q, V
+from torsional.numerics.stepping_state import State as Standing
+from torsional.solvers.transient.honesty import STIFF
+from torsional.solvers.transient.linear_parts import Parts, parts_of
+from torsional.solvers.transient.marching import Accuracy, marched
+from torsional.solvers.transient.problem import Drives, Problem
+from torsional.solvers.transient.resuming import resumed
+from torsional.solvers.transient.speed_profile import SpeedProfile
+from torsional.solvers.transient.starts import starting
+from torsional.system import System
+
+WHAT = "the certificate"
+Flags = NDArray[np.bool_]
+
+
+class Certificate(NamedTuple):
+    """The largest ``violation`` of complementarity in some ``steps``, over the largest force or overlap at the time;
+    the most contacts ``closed`` at once, and how many times one opened or closed (``changes``)."""
+
+    violation: float
+    closed: int
+    changes: int
+    steps: int
+
+
+@checked
+def certified(
+    system: System,
+    drives: Drives,
+    run: xr.Dataset,
+    steps: int = 100,
+    *,
+    speed: float | SpeedProfile | None = None,
+    hold: str = "",
+) -> Certificate:
+    """How well the next ``steps`` of a ``run`` solve the complementarity problem of their contacts.
+
+    ``system``, ``drives``, ``speed``, ``hold`` as in the run, of constant implicit steps, which goes on from its end.
+    With the motion q⁺, v⁺ that a step found, its forces λ⁺ = max(0, −k (g⁺ + τ ġ⁺)) are put into
+
+        0 ≤ λ⁺ ⟂ p + M λ⁺ ≥ 0,
+
+    which is set up anew from matrices at every step, and has one solution (`torsional.numerics.complementarity_step`).
+    Contact times are those under the guard.  Raises ModelError for parts that are neither linear nor one-sided
+    springs, for springs that soften, and for a run that does not go on under these drives.
+    """
+    problem = Problem.of(system, drives, speed, hold=hold)
+    accuracy = Accuracy(float(run.attrs["end_step"]), run.attrs["method"], float(run.attrs["spectral_radius"]))
+    begun = starting(run, problem.system, problem.acting, problem.hold, problem.start_speed)
+    state = resumed(run, begun, problem, accuracy)
+    if state.standing is None or state.standing.counts[Count.RUNG]:
+        remedy = "give it the drives of the run, one with constant steps"
+        raise ModelError("the run does not go on from its end", where="run", remedy=remedy)
+    parts = _guarded(problem, accuracy.step)
+    worst, most, changes = 0.0, 0, 0
+    for _ in range(steps):
+        after = marched(problem, state, 1, accuracy).end
+        if after.standing is None:
+            break
+        told, were, are = _step(parts, state.standing, after.standing, accuracy)
+        worst, most, changes = max(worst, told), max(most, int(are.sum())), changes + int((were != are).sum())
+        state = after
+    return Certificate(worst, most, changes, steps)
+
+
+def _guarded(problem: Problem, step: float) -> Parts:
+    """The parts with the contact times that the steps give them."""
+    parts = parts_of(problem, WHAT)
+    if not (parts.walls.stiffness > 0).all():
+        name = problem.system.connections.names[parts.of[(parts.walls.stiffness <= 0).argmax()]]
+        raise ModelError(f"{WHAT} knows one-sided springs, not stages that soften", where=name)
+    stiff = step * problem.plan.hinges.values[PACE] > STIFF
+    own = parts.walls.contact_time
+    walls = OneSided(
+        parts.walls.directions,
+        parts.walls.gap,
+        parts.walls.stiffness,
+        np.where(stiff, np.maximum(own, 0.5 * step), own),
+    )
+    return parts._replace(walls=walls)
+
+
+def _step(parts: Parts, before: Standing, after: Standing, accuracy: Accuracy) -> tuple[float, Flags, Flags]:
+    """Violation of one step, and which contacts push at its begin and at its end."""
+    family, (one, other) = accuracy.family, (before.coordinates, after.coordinates)
+    step = Step(accuracy.step, family.alpha_m, family.alpha_f, family.gamma, family.beta)
+    was, now = (parts.walls.force(own[Q], own[V]) for own in (one, other))
+    linear, motion = (parts.mass, parts.damping, parts.stiffness), (one[Q], one[V], one[OWN], was)
+    problem = step_problem(linear, parts.walls, motion, (one[EXTERNAL], other[EXTERNAL]), step)
+    return violation(problem.matrix, problem.offset, now, problem.scale), was > 0.0, now > 0.0

@@ -1,0 +1,62 @@
+"""Lines of linear parts, hinges and contacts alone: what event by event integration and complementarity can judge."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from torsional.errors import ModelError
+from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.complementarity_step import OneSided
+from torsional.numerics.stepping_plan import dense, mass_matrix
+from torsional.solvers.transient.problem import Problem
+
+
+class Parts(NamedTuple):
+    """M, C, K (N, N) of what is linear, the one-sided springs ``walls`` with the connection ``of`` and the ``side`` of
+    each, and the rows w (E, N), stiffness and damping (E,) of the connections."""
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    walls: OneSided
+    of: IntArray
+    side: Array
+    rows: Array
+    springs: Array
+    dampers: Array
+
+    def torques(self, q: Array, v: Array) -> Array:
+        """k φ + c φ̇ and hinges, of every connection (T, E) [Nm], at coordinates and rates (T, N)."""
+        torque = (q @ self.rows.T) * self.springs + (v @ self.rows.T) * self.dampers
+        np.add.at(torque.T, self.of, (self.side * self.forces(q, v)).T)
+        return np.asarray(torque)
+
+    def forces(self, q: Array, v: Array) -> Array:
+        """λ (T, H), negative where a stage ends, its stiffness being so."""
+        w, walls = self.walls.directions, self.walls
+        opening = walls.gap + q @ w + walls.contact_time * (v @ w)
+        return np.asarray(np.maximum(0.0, -opening) * walls.stiffness)
+
+
+def parts_of(problem: Problem, what: str) -> Parts:
+    """The parts of a line for ``what`` wants them; raises ModelError that names what is neither linear nor such."""
+    c, n = problem.equations.connected, problem.equations.coordinates
+    names = problem.system.connections.names
+    for wrong, why in (
+        (c.address != 0, "is a law that is no sum of hinges and contacts"),
+        (c.centrifugal != 0, "is stiffened by centrifugal forces"),
+        (c.mean_rate != 0, "counts from the whole speed"),
+    ):
+        if wrong.any():
+            raise ModelError(f"{what} knows linear parts, hinges and contacts; this {why}", where=names[wrong.argmax()])
+    if problem.equations.driven.pendulums.size:
+        raise ModelError(f"{what} knows no pendulums", where="pendulum")
+    w, mass = dense(c.rows, n), mass_matrix(problem.equations)
+    if np.linalg.matrix_rank(mass, hermitian=True) < n:
+        raise ModelError(f"{what} needs a mass at every coordinate", remedy="condense massless ones first")
+    of = np.repeat(np.arange(len(w)), np.diff(c.hinge_start))
+    walls = OneSided(-(w[of] * c.side[:, None]).T, c.side * c.gap, c.change, c.contact_time)
+    damping, stiffness = (w.T * c.damping) @ w, (w.T * c.stiffness) @ w
+    return Parts(mass, damping, stiffness, walls, of, c.side, w, c.stiffness, c.damping)
