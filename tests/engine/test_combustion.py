@@ -104,8 +104,8 @@ def test_double_wiebe_changes_the_rise_but_not_the_mean(truck: Engine) -> None:
 @pytest.mark.parametrize(
     ("build", "where"),
     [
-        (lambda: Wiebe(0.0, 0.0, 1.0), "wiebe.duration"),
-        (lambda: Wiebe(0.0, 1.0, -1.0), "wiebe.shape"),
+        (lambda: Wiebe(0.0, 0.0, 1.0), "duration"),
+        (lambda: Wiebe(0.0, 1.0, -1.0), "shape"),
         (lambda: CombustionCycle(main=Wiebe(2.5, 1.0, 1.0)), "main.start"),
         (lambda: CombustionCycle(boost=2.0), "boost"),
         (lambda: CombustionCycle(premixed_fraction=1.5), "premixed_fraction"),

@@ -220,7 +220,7 @@ def test_refused_calls(truck: Engine, arguments: tuple, where: str, told: str) -
         (lambda: FullLoad((1.0,), (1.0,)), "full_load"),
         (lambda: FullLoad((1.0, 1.0), (1.0, 2.0)), "full_load"),
         (lambda: FullLoad((1.0, 2.0), (1.0, -2.0)), "full_load"),
-        (lambda: ChenFlynn(constant=-1.0), "friction.constant"),
+        (lambda: ChenFlynn(constant=-1.0), "constant"),
         (lambda: Excitation(("a", "a"), [3.0], 1.0, np.ones((2, 1))), "nodes"),
         (lambda: Excitation(("a",), [3.0], 1.0, np.ones((2, 1))), "torque"),
         (lambda: Excitation(("a",), [3.0], 1.0, np.full((1, 1), np.nan)), "torque"),

@@ -38,10 +38,10 @@ class Wiebe:
     efficiency: float = 6.908
 
     def __post_init__(self) -> None:
-        within(self.start, -math.pi, math.pi, "wiebe.start", "angle")
-        within(self.duration, 0.01, math.pi, "wiebe.duration", "angle")
-        within(self.shape, 0.0, 10.0, "wiebe.shape", "number")
-        positive(self.efficiency, "wiebe.efficiency", "number")
+        within(self.start, -math.pi, math.pi, "start", "angle")
+        within(self.duration, 0.01, math.pi, "duration", "angle")
+        within(self.shape, 0.0, 10.0, "shape", "number")
+        positive(self.efficiency, "efficiency", "number")
 
     def burnt(self, crank_angle: ArrayLike) -> FloatArray:
         """Burnt fraction [-], in the shape of the crank angle [rad, −2π to 2π]."""
@@ -62,14 +62,14 @@ class LoadTable:
 
     def __post_init__(self) -> None:
         if not self.points or any(len(point) != 2 for point in self.points):
-            raise ModelError("pairs of mean effective pressure and value are needed", where="load table")
+            raise ModelError("pairs of mean effective pressure and value are needed", where="mean_effective_pressure")
         for point in self.points:
-            number(point[0], "load table")
-            number(point[1], "load table")
+            number(point[0], "mean_effective_pressure")
+            number(point[1], "mean_effective_pressure")
         pressures = [point[0] for point in self.points]
         if any(b <= a for a, b in pairwise(pressures)):
             found = ", ".join(f"{pressure:g}" for pressure in pressures)
-            raise ModelError("the mean effective pressures must rise", where="load table", found=found)
+            raise ModelError("the mean effective pressures must rise", where="mean_effective_pressure", found=found)
 
     def __call__(self, mean_effective_pressure: ArrayLike) -> FloatArray:
         """The value at each mean effective pressure [Pa]."""

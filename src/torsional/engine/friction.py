@@ -34,10 +34,10 @@ class ChenFlynn:
     quadratic: float = 0.0011e5
 
     def __post_init__(self) -> None:
-        within(self.constant, 0.0, 1e6, "friction.constant", "pressure")
-        within(self.peak_pressure_factor, 0.0, 0.05, "friction.peak_pressure_factor", "number")
-        within(self.linear, 0.0, 1e6, "friction.linear", "Pa s/m")
-        within(self.quadratic, 0.0, 1e6, "friction.quadratic", "Pa s²/m²")
+        within(self.constant, 0.0, 1e6, "constant", "pressure")
+        within(self.peak_pressure_factor, 0.0, 0.05, "peak_pressure_factor", "number")
+        within(self.linear, 0.0, 1e6, "linear", "Pa s/m")
+        within(self.quadratic, 0.0, 1e6, "quadratic", "Pa s²/m²")
 
     def base(self, piston_speed: ArrayLike) -> FloatArray:
         """The part that does not depend on the cylinder pressure [Pa]."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from torsional.engine import (
     ChenFlynn,
@@ -13,24 +12,18 @@ from torsional.engine import (
     Engine,
     FullLoad,
     GasSource,
-    LoadTable,
     PressureTrace,
-    Wiebe,
 )
 from torsional.errors import ModelError
 from torsional.files.schema.engine import (
-    CombustionBlock,
     EngineBlock,
     FullLoadBlock,
     PressureTraceBlock,
-    TableOverLoad,
-    WiebeBlock,
 )
-from torsional.files.schema.fields import Block
 from torsional.tables import parse_table
 from torsional.units import quoted
 
-_RENAMED = {"heat_spread": "cylinder_spread", "load table": "mean_effective_pressure", "pressure": "pressure_trace"}
+_RENAMED = {"heat_spread": "cylinder_spread", "pressure": "pressure_trace"}
 
 
 @contextmanager
@@ -41,7 +34,7 @@ def within(path: str) -> Iterator[None]:
     except ModelError as error:
         head, _, rest = error.where.partition(".")
         last = path.rpartition(".")[2]
-        if head == last or head == "wiebe":
+        if head == last:
             head, rest = rest, ""
         error.where = ".".join(part for part in (_RENAMED.get(head, head), rest) if part)
         raise error.located(prefix=path) from None
@@ -49,9 +42,11 @@ def within(path: str) -> Iterator[None]:
 
 def engine(block: EngineBlock) -> Engine:
     """The engine with its gas source, friction and full-load curve; ModelError names the key path."""
-    cycle = _combustion(block.combustion) if block.combustion else CombustionCycle()
+    with within("engine.combustion"):
+        cycle = block.combustion.made() if block.combustion else CombustionCycle()
     gas: GasSource = _trace(block.pressure_trace) if block.pressure_trace else cycle
-    friction = _friction(block)
+    with within("engine.friction"):
+        friction = block.friction.made() if block.friction else ChenFlynn()
     full_load = _full_load(block.full_load) if block.full_load else None
     with within("engine"):
         return Engine(
@@ -79,41 +74,6 @@ def _layout(block: EngineBlock) -> CrankLayout:
     if block.layout.startswith("inline"):
         return CrankLayout.inline(block.firing_order, intervals)
     return CrankLayout.vee(block.firing_order, block.bank_angle or 0.0, intervals, block.throws, block.pin_split)
-
-
-def _friction(block: EngineBlock) -> ChenFlynn:
-    with within("engine.friction"):
-        return ChenFlynn(**_given(block.friction)) if block.friction else ChenFlynn()
-
-
-def _given(block: Block) -> dict[str, Any]:
-    return {key: getattr(block, key) for key in block.model_fields_set if getattr(block, key) is not None}
-
-
-def _combustion(block: CombustionBlock) -> CombustionCycle:
-    settings = _given(block)
-    for key in ("main", "premixed"):
-        if key in settings:
-            settings[key] = _wiebe(settings[key], f"engine.combustion.{key}")
-    for key in ("boost", "premixed_fraction"):
-        if key in settings:
-            settings[key] = _load_table(settings[key], f"engine.combustion.{key}")
-    with within("engine.combustion"):
-        return CombustionCycle(**settings)
-
-
-def _wiebe(block: WiebeBlock, path: str) -> Wiebe:
-    with within(path):
-        return Wiebe(block.start, block.duration, block.shape, block.efficiency)
-
-
-def _load_table(block: TableOverLoad, path: str) -> LoadTable | float:
-    loads, values = block.mean_effective_pressure, block.value
-    if len(loads) != len(values):
-        found = f"{len(loads)} loads, {len(values)} values"
-        raise ModelError("a value for each load is wanted", where=path, found=found)
-    with within(path):
-        return LoadTable(tuple(zip(loads, values, strict=True))) if len(values) > 1 else values[0]
 
 
 @contextmanager

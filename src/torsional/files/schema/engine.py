@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from torsional import units
+from torsional.engine import ChenFlynn, CombustionCycle, LoadTable, Wiebe
 from torsional.errors import ModelError
 from torsional.files.schema.fields import Angle, Block, Length, Number, Pressure, Quantity, Speed
+from torsional.files.schema.making import Making
 
 Angles = Annotated[list[float], Quantity("angle", least=0, shape="list")]
 Factors = Annotated[list[float], Quantity("ratio", least=0, shape="list")]
@@ -18,8 +20,10 @@ Pressures = Annotated[list[float], Quantity("mean_pressure", least=0, shape="lis
 Cylinders = Annotated[list[int], Field(max_length=16)]
 
 
-class WiebeBlock(Block):
+class WiebeBlock(Making):
     """A Wiebe function: burnt fraction over crank angle from firing top dead centre."""
+
+    makes: ClassVar = Wiebe
 
     start: Angle = Field(description="start of combustion, negative before top dead centre")
     duration: Angle
@@ -27,11 +31,19 @@ class WiebeBlock(Block):
     efficiency: Number = Field(6.908, description="a, 6.908 burns 99.9 % within the duration")
 
 
-class TableOverLoad(Block):
+class TableOverLoad(Making):
     """Values over the brake mean effective pressure of the firing cylinders."""
 
     mean_effective_pressure: Pressures
     value: Annotated[list[float], Field(min_length=1)]
+
+    def made(self) -> LoadTable | float:
+        """The table, or its value where it has one row."""
+        loads, values = self.mean_effective_pressure, self.value
+        if len(loads) != len(values):
+            found = f"{len(loads)} loads, {len(values)} values"
+            raise ModelError("a value for each load is wanted", found=found)
+        return LoadTable(tuple(zip(loads, values, strict=True))) if len(values) > 1 else values[0]
 
 
 class BoostOverLoad(TableOverLoad):
@@ -61,8 +73,10 @@ Boost = Annotated[BoostOverLoad, BeforeValidator(_as_table, json_schema_input_ty
 Fraction = Annotated[FractionOverLoad, BeforeValidator(_as_table, json_schema_input_type=OneText | FractionOverLoad)]
 
 
-class CombustionBlock(Block):
+class CombustionBlock(Making):
     """The built-in diesel cycle; what is left out has the defaults of `CombustionCycle`."""
+
+    makes: ClassVar = CombustionCycle
 
     boost: Boost | None = Field(None, description="intake pressure, absolute: one value, or a table over load")
     compression_exponent: Number | None = None
@@ -106,8 +120,10 @@ class FullLoadBlock(TableFile):
         return self
 
 
-class FrictionBlock(Block):
+class FrictionBlock(Making):
     """Friction mean effective pressure (Chen and Flynn)."""
+
+    makes: ClassVar = ChenFlynn
 
     constant: Annotated[float, Quantity("mean_pressure", least=0)] | None = None
     peak_pressure_factor: Annotated[float, Quantity("ratio", least=0)] | None = None
