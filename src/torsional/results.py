@@ -130,6 +130,7 @@ NAMES: dict[str, Named] = {
     "end_speed": Named("angular_velocity", "last speeds, from which a run goes on"),
     "end_memory": Named("relative_angle", "last memories, from which a run goes on"),
     "end_integral": Named("", "last integrals of governors, from which a run goes on"),
+    "end_charge": Named("", "last charges of cylinders less one, from which a run goes on"),
     "end_standing": Named("", "all that a march stands on, from which a run goes on to the last bit"),
     "torque_lowest": Named("torque", "extreme of a run"),
     "torque_highest": Named("torque", "extreme of a run"),
