@@ -55,7 +55,7 @@ def loading(angle: Array, friction: float = FRICTION) -> Array:
 def branches(loop: xr.Dataset) -> tuple[Array, Array, Array]:
     """Angle, first and closed torque of a single loop."""
     one = loop.isel(speed=0, sweep=0)
-    return one.drive_angle.values, one.drive_torque.values[0], one.torque.values[1]
+    return one.drive_angle.values, one.drive_torque.values[0], one.drive_torque.values[1]
 
 
 # --- closed forms ---
