@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -111,13 +112,7 @@ def _operation(block: OperationBlock | None) -> Operation:
 
 
 def _landmarks(found: Landmarks, block: LandmarksBlock | None) -> Landmarks:
-    given = {key: getattr(block, key) for key in block.model_fields_set} if block else {}
-    places = {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    return Landmarks(**{**_fields(found), **places})
-
-
-def _fields(marks: Landmarks) -> dict[str, Any]:
-    return {key: getattr(marks, key) for key in Landmarks.__dataclass_fields__}
+    return dataclasses.replace(found, **block.values()) if block else found
 
 
 def _check_powertrains(model: Model, built: Machine) -> None:

@@ -14,6 +14,7 @@ from torsional.files.schema.absorbers import AnyAbsorber
 from torsional.files.schema.engine import EngineBlock
 from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Speed
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox, VehicleBlock
+from torsional.files.schema.making import Making
 from torsional.files.schema.parts import Part
 from torsional.files.schema.published import published
 
@@ -61,7 +62,7 @@ class OperationBlock(Block):
     )
 
 
-class LandmarksBlock(Block):
+class LandmarksBlock(Making):
     """Names of the places that analyses ask for, where the blocks do not say them."""
 
     throws: Names | None = Field(None, description="nodes on which the cylinders act: one a throw, or one for all")
