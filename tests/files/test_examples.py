@@ -105,11 +105,3 @@ def test_starter_models_load(kind: str, tmp_path: Path) -> None:
     model = load_model(path)
     assert warnings_of(model) == []
     operated(model, float(model.torques(3)[1]))
-
-
-def test_an_empty_landmark_is_none(tmp_path: Path) -> None:
-    """``input:`` with nothing behind it is as if it were left out."""
-    text = example("marine_line").read_text(encoding="utf-8")
-    path = tmp_path / "line.yaml"
-    path.write_text(text.replace("  input: pinion", "  input:"), encoding="utf-8")
-    assert load_model(path).landmarks.input == ""
