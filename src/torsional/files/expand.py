@@ -68,8 +68,7 @@ def component_document(part: Component, name: str = "") -> dict[str, Any]:
     kind: Any = type(part)
     if kind not in _TYPES:
         raise ModelError("the file format has no such component", where=name, found=kind.__name__)
-    rubs = isinstance(part, Coupling) and isinstance(part.law, Jenkins)
-    given: dict[str, Any] = {"type": "friction_washer" if rubs else _TYPES[kind]}
+    given: dict[str, Any] = {"type": _TYPES[kind]}
     for field in dataclasses.fields(kind):
         value = getattr(part, field.name)
         if value != field.default:
@@ -89,9 +88,9 @@ def _plain(value: Any) -> Any:
 
 
 def _law(law: Law, name: str) -> dict[str, Any]:
-    """Friction by its torque and stiffness, a spring without hinges by its stiffness, any other hinge by hinge."""
+    """Friction as a washer, a spring without hinges by its stiffness, any other law hinge by hinge."""
     if isinstance(law, Jenkins):
-        return {"friction_torque": law.limit_torque, "friction_stiffness": law.stiffness}
+        return {"type": "friction_washer", "friction_torque": law.limit_torque, "friction_stiffness": law.stiffness}
     rows = law.straight
     if rows is None:
         raise ModelError("the file format has no such law", where=name, found=type(law).__name__)

@@ -115,7 +115,7 @@ class Contacts(Law):
         return np.concatenate([[float(DAMPERS.index(self.damper))], rows.T.ravel()])
 
     def hinges(self) -> HingeRows | None:
-        """One hinge a contact, with its contact time; None where the damper is cut, since the torque then jumps."""
+        """One hinge a contact, with its contact time; None with a damper that makes it no sum of hinges."""
         if self.damper != "held":
             return None
         columns = (self.gaps, self.sides, self.stiffnesses, self.contact_times)
