@@ -8,6 +8,7 @@ import pytest
 import torsional as tv
 from tests.shipped import shipped
 from torsional.errors import ModelError
+from torsional.studies.subharmonic import full_load_curve
 from torsional.units import RPM
 
 
@@ -37,6 +38,13 @@ def test_below_the_full_load_curve(truck: tv.Model) -> None:
     assert abs(both[0][1] - both[1][0]) < 1e-12 * abs(both[1][0])
     with pytest.raises(ModelError, match="does not reach this speed"):
         tv.run_up_response(truck, speeds[:1], None, "12", [3.0])
+
+
+def test_the_curve_is_drawn_as_far_as_it_reaches(truck: tv.Model) -> None:
+    drawn = full_load_curve(truck, 300 * RPM, 3000 * RPM)
+    assert drawn is not None and drawn.name == "mean_torque"
+    assert drawn.speed.values[[0, -1]] / RPM == pytest.approx([600.0, 2000.0])
+    assert full_load_curve(truck, 2200 * RPM, 3000 * RPM) is None
 
 
 def test_what_takes_an_engine(truck: tv.Model) -> None:

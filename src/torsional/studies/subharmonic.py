@@ -75,9 +75,12 @@ def round_steps(low: float, high: float, count: int) -> Array:
 
 
 def full_load_curve(model: Model, low: float, high: float) -> xr.DataArray | None:
-    """The full-load torque (speed) [Nm] between two speeds [rad/s], its corners included; None without a curve."""
+    """The full-load torque (speed) [Nm] between two speeds [rad/s], its corners included; None without one there."""
     curve = model.full_load_curve
     if curve is None:
+        return None
+    low, high = max(low, curve.speeds[0]), min(high, curve.speeds[-1])
+    if low >= high:
         return None
     corners = [speed for speed in curve.speeds if low < speed < high]
     speeds = np.unique([*np.linspace(low, high, 200), *corners])
