@@ -136,6 +136,7 @@ def test_a_law_without_memory_is_its_kernel() -> None:
 
 
 BRISTLES = LuGre(1e5, 1e5**0.5, 1.0, breakaway_torque=1.5, stribeck_rate=0.001, viscous_damping=0.4)
+FLOWS = {BRISTLES.address: BRISTLES.flow_address}
 
 
 def test_stick_and_slip_of_bristles() -> None:
@@ -143,7 +144,7 @@ def test_stick_and_slip_of_bristles() -> None:
     pulled = [Connection([1.0], 2.0), Connection([1.0], law=BRISTLES, mean_rate=1.0)]
     system = equations([1.0], pulled, frame=([0.0], [0.1]))
     times = np.arange(0.0, 28.0, 1e-3)
-    found = explicit_march(system, times, [0.0], [-0.1], tolerance=1e-8, bristles=BRISTLES.address)
+    found = explicit_march(system, times, [0.0], [-0.1], tolerance=1e-8, flows=FLOWS)
     speed = found.rates[:, 0] + 0.1
     jumps = times[1:][(speed[1:] > 0.1) & (speed[:-1] <= 0.1)]
     np.testing.assert_allclose(np.diff(jumps), 6.363, atol=1e-3)
@@ -166,7 +167,7 @@ def test_bristles_under_a_changing_normal_load_against_scipy() -> None:
         return [y[2], y[3], -torque / 2.0, torque + 40.0 * t, bent]
 
     exact = solve_ivp(rates, (0.0, 1.0), np.array([0.0, 0.0, 0.0, 1.0, 0.0]), method="LSODA", rtol=1e-10, atol=1e-13)
-    found = explicit_march(system, [0.0, 1.0], [0.0, 0.0], [0.0, 1.0], tolerance=1e-9, bristles=BRISTLES.address)
+    found = explicit_march(system, [0.0, 1.0], [0.0, 0.0], [0.0, 1.0], tolerance=1e-9, flows=FLOWS)
     np.testing.assert_allclose(found.states[-1, :4], exact.y[:4, -1], rtol=1e-6)
     assert found.states[-1, -1] == pytest.approx(exact.y[4, -1], rel=1e-6)
 
@@ -177,7 +178,7 @@ def test_a_spring_that_sticks_and_slides() -> None:
     washer = Jenkins(5.0, 1000.0)
     system = equations([1.0], [Connection([1.0], 100.0), Connection([1.0], law=washer)])
     times = np.linspace(0.0, 0.25, 26)
-    found = explicit_march(system, times, [-1.0], [0.0], tolerance=1e-9, sliders=washer.address)
+    found = explicit_march(system, times, [-1.0], [0.0], tolerance=1e-9, flows={washer.address: washer.flow_address})
     stuck = np.sqrt(1100.0)  # from rest, about −1 + 100/1100, to the deflection 0.005
     slips = np.arccos(1.0 - 0.005 * 1100.0 / 100.0) / stuck
     speed = 100.0 / stuck * np.sin(stuck * slips)
@@ -199,7 +200,7 @@ def test_a_march_goes_on_from_where_another_ended() -> None:
     ]
     system = equations([2.0, 1.0], parts, governors=[governor], levels=[(0.0, 60.0)], frame=([0.0], [50.0]),
                        reference_time=0.3)  # fmt: skip
-    options = {"tolerance": 1e-10, "bristles": BRISTLES.address}
+    options = {"tolerance": 1e-10, "flows": FLOWS}
     whole = explicit_march(system, [0.0, 0.2, 0.4], [0.0, 0.0], [0.0, 3.0], **options)
     second = explicit_march(system, [0.2, 0.4], whole.angles[1], whole.rates[1], **options, integral=whole.integrals[1],
                             reference_speed=whole.references[1], memory=whole.memories[1])  # fmt: skip

@@ -76,6 +76,8 @@ class Law:
     """
 
     kernel: ClassVar[Callable[..., Told]]
+    flow: ClassVar[Callable[..., Told] | None] = None
+    """A kernel whose first number is the rate of the memory, for integrators that take it for a state."""
     remembers: ClassVar[bool] = False
     carries_mean_torque: ClassVar[bool] = True
     departs: ClassVar[str] = "swings across a change of its stiffness, where the linear response is an approximation"
@@ -142,6 +144,11 @@ class Law:
         edges = self.edges
         middle = np.searchsorted(edges, 0.0)
         return np.asarray(np.searchsorted(edges, np.asarray(angle, dtype=float)) - middle, dtype=np.int64)
+
+    @property
+    def flow_address(self) -> int:
+        """Where the compiled rate of the memory is; zero of a law whose memory has none."""
+        return address_of(type(self).flow) if type(self).flow is not None else 0
 
     def evaluate(
         self, angle: ArrayLike, rate: ArrayLike = 0.0, memory: ArrayLike = 0.0, step: ArrayLike = 0.0

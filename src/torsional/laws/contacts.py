@@ -17,6 +17,7 @@ from torsional.errors import ModelError
 from torsional.laws.base import Law, Told, plain
 from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array
+from torsional.numerics.hinge import depth
 
 DAMPERS = ("held", "cut", "limited")
 """The numbers 0, 1, 2 of ``damper`` in the parameters."""
@@ -28,12 +29,12 @@ def contacts_torque(parameters: Array, angle: float, rate: float, memory: float,
     torque, tangent, drag = 0.0, 0.0, 0.0
     for i in range(1, parameters.size, 4):
         side, stiffness, time = parameters[i + 1], parameters[i + 2], parameters[i + 3]
-        depth = side * (angle - parameters[i])
-        pressed = depth + time * side * rate
-        if parameters[0] == 2.0 and pressed > 2.0 * depth > 0.0:
-            torque += 2.0 * side * stiffness * depth
+        beyond = depth(angle, 0.0, parameters[i], side, 0.0)
+        pressed = depth(angle, rate, parameters[i], side, time)
+        if parameters[0] == 2.0 and pressed > 2.0 * beyond > 0.0:
+            torque += 2.0 * side * stiffness * beyond
             tangent += 2.0 * stiffness
-        elif (depth if parameters[0] == 1.0 else pressed) > 0.0 and (depth > 0.0 or parameters[0] < 2.0):
+        elif (beyond if parameters[0] == 1.0 else pressed) > 0.0 and (beyond > 0.0 or parameters[0] < 2.0):
             torque += side * stiffness * pressed
             tangent += stiffness
             drag += stiffness * time

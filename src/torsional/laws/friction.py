@@ -72,6 +72,13 @@ def jenkins_torque(parameters: Array, angle: float, rate: float, memory: float, 
     return stiffness * deflection, stiffness * along, stiffness * step, stiffness, deflection, along, step, 1.0
 
 
+@numba.njit(cache=True, error_model="numpy")
+def jenkins_flow(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
+    """ζ̇ = u of a spring that sticks, 0 of one that slides on."""
+    slides = parameters[1] * abs(memory) >= parameters[0] and memory * rate > 0.0
+    return plain(0.0 if slides else rate, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 @checked_fields
 class Jenkins(Law):
@@ -90,6 +97,7 @@ class Jenkins(Law):
     stiffness: float
 
     kernel: ClassVar[Callable[..., Told]] = jenkins_torque
+    flow: ClassVar[Callable[..., Told] | None] = jenkins_flow
     remembers: ClassVar[bool] = True
     carries_mean_torque: ClassVar[bool] = False
     departs: ClassVar[str] = "slips, where the linear response lets it stick"

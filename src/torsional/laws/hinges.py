@@ -17,6 +17,7 @@ from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import rising_points
 from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.hinge import depth
 from torsional.units import quoted
 
 
@@ -26,7 +27,7 @@ def hinges_torque(parameters: Array, angle: float, rate: float, memory: float, s
     torque, tangent = parameters[0] * angle, parameters[0]
     for i in range(1, parameters.size, 3):
         side, change = parameters[i + 1], parameters[i + 2]
-        beyond = side * (angle - parameters[i])
+        beyond = depth(angle, 0.0, parameters[i], side, 0.0)
         if beyond > 0.0:
             torque += side * change * beyond
             tangent += change

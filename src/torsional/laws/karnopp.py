@@ -114,9 +114,9 @@ class Karnopp(Law):
     def steady(self, rate: ArrayLike) -> Array:
         """Torque [Nm] at a constant rate u [rad/s] that has lasted: N g(u) sgn u + c_v u."""
         u = np.asarray(rate, dtype=float)
-        raised = np.clip(2.0 - np.abs(u) / self.stick_rate, 0.0, 1.0)
-        held = self.sliding_torque + (self.breakaway_torque - self.sliding_torque) * raised
-        return np.asarray(self.normal_load * held * np.sign(u) + self.grease_damping * u)
+        shape = (self.sliding_torque, self.breakaway_torque, self.stick_rate)
+        held = [most_held(v, *shape)[0] for v in u.ravel().tolist()]
+        return np.asarray(self.normal_load * np.reshape(held, u.shape) * np.sign(u) + self.grease_damping * u)
 
     def stage_name(self, angle: float) -> str:
         """Under a steady torque it has come to rest."""

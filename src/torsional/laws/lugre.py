@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
-from torsional.laws.base import Law, Told
+from torsional.laws.base import Law, Told, plain
 from torsional.laws.checks import breakaway_above_sliding
 from torsional.numerics.arrays import Array
 
@@ -78,6 +78,13 @@ def lugre_torque(parameters: Array, angle: float, rate: float, memory: float, st
     return torque, load * s0 * along, d_rate, load * left * (s0 - s1 * a), bent, along, d_bent, left
 
 
+@numba.njit(cache=True, error_model="numpy")
+def lugre_flow(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
+    """ż = u − σ0 |u| z/g(u)."""
+    curve, _ = stribeck(rate, parameters[3], parameters[4], parameters[5])
+    return plain(rate - parameters[0] * abs(rate) / curve * memory, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 @checked_fields
 class LuGre(Law):
@@ -105,6 +112,7 @@ class LuGre(Law):
     grease_damping: float = 0.0
 
     kernel: ClassVar[Callable[..., Told]] = lugre_torque
+    flow: ClassVar[Callable[..., Told] | None] = lugre_flow
     remembers: ClassVar[bool] = True
     carries_mean_torque: ClassVar[bool] = False
     departs: ClassVar[str] = "slips, where the linear response lets it stick"
@@ -129,8 +137,9 @@ class LuGre(Law):
     def steady(self, rate: ArrayLike) -> Array:
         """Torque [Nm] at a constant rate u [rad/s] that has lasted: N (g(u) sgn u + σ2 u) + c_v u."""
         u = np.asarray(rate, dtype=float)
-        raised = (self.breakaway_torque - self.sliding_torque) * np.exp(-np.square(u / self.stribeck_rate))
-        dry = np.sign(u) * (self.sliding_torque + raised)
+        shape = (self.sliding_torque, self.breakaway_torque, self.stribeck_rate)
+        curve = [stribeck(v, *shape)[0] for v in u.ravel().tolist()]
+        dry = np.sign(u) * np.reshape(curve, u.shape)
         return np.asarray(self.normal_load * (dry + self.viscous_damping * u) + self.grease_damping * u)
 
     def coefficient(self, rate: ArrayLike, step: ArrayLike) -> Array:

@@ -6,6 +6,7 @@ It shares the right-hand side of no implicit step, looks for no events and takes
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numba
@@ -140,8 +141,7 @@ def explicit_march(
     rates: ArrayLike,
     *,
     tolerance: float = 1e-10,
-    bristles: int = 0,
-    sliders: int = 0,
+    flows: Mapping[int, int] | None = None,
     reference_speed: float | None = None,
     integral: ArrayLike = 0.0,
     memory: ArrayLike = 0.0,
@@ -149,17 +149,16 @@ def explicit_march(
 ) -> March:
     """Integrate from ``angles`` [rad] and ``rates`` [rad/s] (N,) at the first of the rising ``times`` [s].
 
-    ``tolerance``: of a step's error, relative to the largest angle and the largest rate at the time.  ``bristles`` and
-    ``sliders``: addresses of the kernels of LuGre friction and of Jenkins' spring and slider, whose memories are
-    integrated; laws with another memory are refused.  Governors act without sampling.  To begin with:
-    ``reference_speed`` Ω_r [rad/s], default the speed at the reference; ``integral`` (G,) [Nm] of governors; ``memory``
-    (E,) [rad].  Every time is the end of a step, as are the knots of levels.  Raises ModelError for what cannot be
-    integrated, and where ``most_steps`` do not do.
+    ``tolerance``: of a step's error, relative to the largest angle and the largest rate at the time.  ``flows``: where
+    the rate of its memory is told, by the address of a law's kernel; laws whose memory has none are refused.  Governors
+    act without sampling.  To begin with: ``reference_speed`` Ω_r [rad/s], default the speed at the reference;
+    ``integral`` (G,) [Nm] of governors; ``memory`` (E,) [rad].  Every time is the end of a step, as are the knots of
+    levels.  Raises ModelError for what cannot be integrated, and where ``most_steps`` do not do.
     """
     grid = np.asarray(times, dtype=float)
     if grid.ndim != 1 or grid.size < 2 or not (np.diff(grid) > 0.0).all():
         raise ModelError("times must rise", where="times", found=str(grid[:5]))
-    at, n = places(equations, bristles, sliders), equations.coordinates
+    at, n = places(equations, flows), equations.coordinates
     states = np.zeros((grid.size, at.size))
     states[0, :n], states[0, n : 2 * n], states[0, at.governor : at.memories] = angles, rates, integral
     states[0, at.memories :] = np.broadcast_to(np.asarray(memory, dtype=float), at.memory.shape)[at.memory >= 0]

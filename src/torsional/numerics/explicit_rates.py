@@ -7,6 +7,7 @@ y = (q, q̇, Ω_r, I_g of the governors, z of the connections that remember).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numba
@@ -15,6 +16,7 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.hinge import depth
 from torsional.numerics.leaking import leak_towards
 from torsional.numerics.small_linear import backsolve, factor
 from torsional.numerics.sources import (
@@ -36,7 +38,7 @@ FILLING = 1e3
 class Places(NamedTuple):
     """What a right-hand side needs beside the connections: M (N, N) without pistons, its inverse; where memories are.
 
-    ``memory`` (E,): a connection's place among the memories, or −1; ``slides`` (E,): 1 for a spring and slider;
+    ``memory`` (E,): a connection's place among the memories, or −1; ``flow`` (E,): where its rate is told;
     ``governor``, ``memories``: where I_g and z begin in y, of ``size`` entries.
     """
 
@@ -44,20 +46,21 @@ class Places(NamedTuple):
     mass: Array
     inverse: Array
     memory: IntArray
-    slides: IntArray
+    flow: IntArray
     governor: int
     memories: int
     size: int
 
 
-def places(equations: Equations, bristles: int = 0, sliders: int = 0) -> Places:
-    """Work out masses and places once; the addresses are of the kernels of LuGre friction and of spring and slider.
+def places(equations: Equations, flows: Mapping[int, int] | None = None) -> Places:
+    """Work out masses and places once; ``flows``: where the rate of its memory is, by the address of a law's kernel.
 
     Raises ModelError for coordinates without mass and for laws with another memory, which has no rate.
     """
     connected, n = equations.connected, equations.coordinates
     remembers = np.flatnonzero((connected.remembers != 0) & (connected.address != 0))
-    if not np.isin(connected.address[remembers], [bristles, sliders]).all():
+    flow = np.array([(flows or {}).get(address, 0) for address in connected.address.tolist()], dtype=np.int64)
+    if not flow[remembers].all():
         remedy = "take the implicit steps, or LuGre friction"
         raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
     mass = np.zeros((n, n))
@@ -66,11 +69,10 @@ def places(equations: Equations, bristles: int = 0, sliders: int = 0) -> Places:
         raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
     memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
     memory[remembers] = np.arange(remembers.size)
-    slides = ((connected.address == sliders) & (memory >= 0)).astype(np.int64)
     governor = 2 * n + 1
     memories = governor + equations.governed.proportional.size
     inverse = np.asarray(np.linalg.inv(mass), dtype=float)
-    return Places(outside_of(equations), mass, inverse, memory, slides, governor, memories, memories + remembers.size)
+    return Places(outside_of(equations), mass, inverse, memory, flow, governor, memories, memories + remembers.size)
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -96,9 +98,7 @@ def elastic_torque(connected: Connected, e: int, angle: float, rate: float, omeg
     torque = (connected.stiffness[e] + connected.centrifugal[e] * omega * omega) * angle + connected.damping[e] * rate
     for h in range(connected.hinge_start[e], connected.hinge_start[e + 1]):
         side = connected.side[h]
-        beyond = side * (angle - connected.gap[h])
-        if connected.change[h] > 0.0:
-            beyond += connected.contact_time[h] * side * rate
+        beyond = depth(angle, rate, connected.gap[h], side, connected.contact_time[h])
         if beyond > 0.0:
             torque += side * connected.change[h] * beyond
     return torque
@@ -112,16 +112,6 @@ def normal_load(c: Connected, outside: Outside, e: int, t: float, omega: float, 
     for j in range(c.load_start[e], c.load_start[e + 1]):
         load += c.load_share[j] * abs(elastic[c.load_of[j]])
     return max(load, 0.0)
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _memory_rate(values: Array, slides: bool, rate: float, bent: float) -> float:
-    """ż = u − σ0 |u| z/g(u) of bristles, from parameters σ0, σ1, σ2, g_c, g_s, u_s, …; u of a spring that sticks and
-    zero of one that slides, from F, k."""
-    if slides:
-        return 0.0 if values[1] * abs(bent) >= values[0] and bent * rate > 0.0 else rate
-    curve = values[3] + (values[4] - values[3]) * math.exp(-((rate / values[5]) ** 2))
-    return rate - values[0] * abs(rate) / curve * bent
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -147,7 +137,8 @@ def _connection_torques(
             bent = 0.0
             if at.memory[e] >= 0:
                 bent = y[at.memories + at.memory[e]]
-                out[at.memories + at.memory[e]] = _memory_rate(values, at.slides[e] == 1, rate[e], bent)
+                flowing = law_at(at.flow[e])
+                out[at.memories + at.memory[e]] = flowing(values, angle[e], rate[e], bent, 0.0)[0]
             law = law_at(c.address[e])
             total += law(values, angle[e], rate[e], bent, 0.0)[0]
         add_row(c.rows, e, -total, torque)

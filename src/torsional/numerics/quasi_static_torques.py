@@ -9,6 +9,7 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.hinge import depth
 from torsional.numerics.sources import row_product
 from torsional.numerics.stepping_data import Connected
 from torsional.numerics.uncounted import uncounted
@@ -64,7 +65,7 @@ def _spring(c: Connected, e: int, square: float, rate: float, step: float, w: Wo
     torque, slope = stiffness * angle + c.damping[e] * rate, stiffness + c.damping[e] / step
     for h in range(c.hinge_start[e], c.hinge_start[e + 1]):
         side, change, delay = c.side[h], c.change[h], c.contact_time[h]
-        beyond = side * (angle - c.gap[h] + delay * rate)
+        beyond = depth(angle, rate, c.gap[h], side, delay)
         if beyond > 0.0:
             torque += side * change * beyond
             slope += change * (1.0 + delay / step)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.hinge import wrongly
 from torsional.numerics.stepping_plan import (
     ADDRESS,
     CENTRIFUGAL,
@@ -37,8 +38,6 @@ from torsional.numerics.stepping_plan import (
 from torsional.numerics.stepping_state import LAW_TORQUE, LOAD, MEMORY, OFFSET, RATE, TORQUE, TWIST
 from torsional.numerics.uncounted import inner, merged
 
-ROUNDING = 1e-15
-"""Share of a hinge's angle by which it may be on the wrong side: all that rounding leaves to tell."""
 TRUSTED = 4
 """Passes for which the tangent of a law is believed; from then on it is one that cannot overshoot."""
 MOVED, STIFFNESS, DAMPING, SHIFT, STEP, SHARE = range(4, 10)
@@ -134,9 +133,8 @@ def disagreeing(hinges: HingeRows, bent: Array, now: Array) -> int:
     """Hinges that are open where they should be closed, or closed where open."""
     count = 0
     for i in range(hinges.of.size):
-        e, gap = hinges.of[i], hinges.values[GAP, i]
-        beyond = now[TWIST, e] - gap + bent[DELAY, i] * now[RATE, e]
-        count += bent[FACING, i] * beyond < -ROUNDING * (abs(gap) + abs(now[TWIST, e]))
+        e = hinges.of[i]
+        count += wrongly(bent[FACING, i], now[TWIST, e], now[RATE, e], hinges.values[GAP, i], bent[DELAY, i])
     return count
 
 
@@ -145,9 +143,8 @@ def turn(hinges: HingeRows, bent: Array, now: Array, one: bool) -> None:
     """Open or close the hinges that disagree; all of them, or the last ``one`` alone."""
     for k in range(hinges.of.size):
         i = hinges.of.size - 1 - k
-        e, gap = hinges.of[i], hinges.values[GAP, i]
-        beyond = now[TWIST, e] - gap + bent[DELAY, i] * now[RATE, e]
-        if bent[FACING, i] * beyond < -ROUNDING * (abs(gap) + abs(now[TWIST, e])):
+        e = hinges.of[i]
+        if wrongly(bent[FACING, i], now[TWIST, e], now[RATE, e], hinges.values[GAP, i], bent[DELAY, i]):
             bent[FACING, i] = -bent[FACING, i]
             if one:
                 return

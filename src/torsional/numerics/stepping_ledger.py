@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.hinge import depth
 from torsional.numerics.stepping_forces import DAMPING, DELAY, FACING, Bent
 from torsional.numerics.stepping_plan import (
     ADDRESS,
@@ -108,7 +109,7 @@ def _turned(hinges: HingeRows, bent: Array, twist: Array, sense: Array) -> bool:
     turned = False
     for i in range(hinges.of.size):
         side = hinges.values[SIDE, i]
-        beyond = side * (twist[hinges.of[i]] - hinges.values[GAP, i])
+        beyond = depth(twist[hinges.of[i]], 0.0, hinges.values[GAP, i], side, 0.0)
         turned |= sense[i] * side != bent[FACING, i]
         turned |= (sense[i] > 0.0) & (beyond < 0.0)
     return turned
@@ -123,9 +124,9 @@ def _struck(hinges: HingeRows, bent: Array, now: Array, before: Array, sense: Ar
         was, closed = sense[i] > 0.0, bent[FACING, i] * side > 0.0
         if not was and not closed:
             continue
-        x0, x1 = side * (before[TWIST, e] - gap), side * (now[TWIST, e] - gap)
-        y0 = x0 + bent[DELAY, i] * side * before[RATE, e]
-        y1 = x1 + bent[DELAY, i] * side * now[RATE, e]
+        x0, x1 = depth(before[TWIST, e], 0.0, gap, side, 0.0), depth(now[TWIST, e], 0.0, gap, side, 0.0)
+        y0 = depth(before[TWIST, e], before[RATE, e], gap, side, bent[DELAY, i])
+        y1 = depth(now[TWIST, e], now[RATE, e], gap, side, bent[DELAY, i])
         if was and closed:
             kept = 0.5 * (max(0.0, x1) ** 2 - max(0.0, x0) ** 2)
             ledger[Entry.STRUCK] += change * (0.5 * (y0 + y1) * (x1 - x0) - kept)
@@ -246,7 +247,7 @@ def stored(constants: Array, masses: Masses, hinges: HingeRows, state: State) ->
         strain += 0.5 * stiffness * at[TWIST, e] ** 2
     for i in range(hinges.of.size):
         if state.sense[i] > 0.0:
-            beyond = max(0.0, hinges.values[SIDE, i] * (at[TWIST, hinges.of[i]] - hinges.values[GAP, i]))
+            beyond = max(0.0, depth(at[TWIST, hinges.of[i]], 0.0, hinges.values[GAP, i], hinges.values[SIDE, i], 0.0))
             strain += 0.5 * hinges.values[CHANGE, i] * beyond * beyond
     for l in range(state.law.shape[1]):
         strain += state.law[STRAIN, l]

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
+from torsional.numerics.hinge import depth
 from torsional.numerics.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.stepping_ledger import stored
 from torsional.numerics.stepping_plan import (
@@ -144,7 +145,7 @@ def _close(plan: Plan, state: State, weights: Array) -> tuple[Array, Array]:
     hinges, constants, of = plan.hinges.values, plan.constants, plan.hinges.of
     twist = weights @ state.coordinates[Q]
     rate = weights @ state.coordinates[V] + state.connection[OFFSET]
-    closed = hinges[SIDE] * (twist[of] - hinges[GAP] + hinges[CONTACT_TIME] * rate[of]) > 0.0
+    closed = depth(twist[of], rate[of], hinges[GAP], hinges[SIDE], hinges[CONTACT_TIME]) > 0.0
     state.sense[closed] = 1.0
     change = np.where(closed, hinges[CHANGE], 0.0)
     stiffness = constants[SPRING] + state.reference[SQUARED] * constants[CENTRIFUGAL]

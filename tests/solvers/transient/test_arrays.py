@@ -20,6 +20,7 @@ from torsional.system import System, assemble
 
 STAGES = Hinges.staged([(500.0, 1e4), (1500.0, 3e4)], coast=[(400.0, 2e4)], stop_stiffness=1e6)
 BRISTLES = LuGre(500.0, 0.5, 0.02, breakaway_torque=0.03, stribeck_rate=0.5)
+FLOWS = {BRISTLES.address: BRISTLES.flow_address}
 PRESSED = NormalLoad(4.0, 0.02, {"shaft": 0.25, "flywheel": 0.5}, carrier="wheel", level="pedal")
 
 
@@ -201,7 +202,7 @@ def test_the_arrays_move_as_the_system_does() -> None:
     n, times = len(system.coordinates), np.linspace(0.0, 0.05, 11)
     start = np.concatenate([np.linspace(0.08, -0.02, n), np.zeros(n), [0.0, 80.0]])
     marched = explicit_march(
-        problem.equations, times, start[:n], start[n : 2 * n], tolerance=1e-9, bristles=BRISTLES.address
+        problem.equations, times, start[:n], start[n : 2 * n], tolerance=1e-9, flows=FLOWS
     )
     expected = independent(system, 80.0, times, start)
     scale = np.abs(expected).max(axis=1)

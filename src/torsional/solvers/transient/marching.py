@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.laws import Jenkins, LuGre
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
-from torsional.numerics.callbacks import address_of
 from torsional.numerics.element_torques import element_torques
 from torsional.numerics.explicit_march import explicit_march
 from torsional.numerics.stepping import Count, Entry, Settings, Status, begin, march
@@ -181,8 +179,7 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
         state.angle,
         state.speed,
         tolerance=accuracy.tolerance,
-        bristles=address_of(LuGre.kernel),
-        sliders=address_of(Jenkins.kernel),
+        flows={law.address: law.flow_address for law in problem.system.connections.laws if law is not None},
         reference_speed=state.reference,
         integral=_remembered(problem, state),
         memory=state.memory,
