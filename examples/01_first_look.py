@@ -7,7 +7,7 @@ import torsional as tv
 
 def main() -> dict[str, float]:
     truck = tv.load_model("examples/truck_dmf.yaml")
-    system, point = tv.operated(truck, torque=2000.0, gear=12)  # linear about 2000 Nm in direct gear
+    system, point = tv.at_operating_point(truck, torque=2000.0, gear=12)  # linear about 2000 Nm in direct gear
     left = np.degrees(point.distance_to_stop("dmf"))
     print(f"dual mass flywheel in {point.stage('dmf')}, {left:.1f}° from its stop")
     modes = tv.modal(system)

@@ -8,7 +8,7 @@ def main() -> dict[float, float]:
     found = {}
     for stiffness in (12.5, 25.0, 50.0):
         changed = tv.changed(truck, f"clutch.stiffness={stiffness} kNm/rad")
-        system, _ = tv.operated(changed, torque=1500.0, gear=12)
+        system, _ = tv.at_operating_point(changed, torque=1500.0, gear=12)
         modes = tv.modal(system)
         clutch = modes.elastic_share.sel(element="clutch").argmax("mode")
         found[stiffness] = 20 * float(modes.frequency[clutch])

@@ -16,7 +16,7 @@ def main() -> dict[str, float]:
         return tv.engine_drive(truck, speed, 1400.0, HIGHEST)
 
     speeds = np.arange(855, 906, 5) * RPM
-    found = tv.swept(system, engine, speeds, hold=truck.landmarks.load, highest_order=9.0, step=5e-5)
+    found = tv.steady_sweep(system, engine, speeds, hold=truck.landmarks.load, highest_order=9.0, step=5e-5)
     up, down = abs(found.twist.sel(element="dmf", order=1.5)).values
     for speed, rising, falling in zip(speeds / RPM, up, down, strict=True):
         print(f"{speed:4.0f} rpm: order 1.5 of the flywheel {rising:.4f} rad upwards, {falling:.4f} rad downwards")

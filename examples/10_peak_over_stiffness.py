@@ -18,7 +18,7 @@ def main(target: Path = Path("out/peak_over_stiffness.png")) -> dict[str, float]
         torque = tv.amplitude(result.torque.sel(element="clutch"), 3.0).squeeze()
         at.append(float(torque.speed[int(torque.argmax("speed"))]) / tv.RPM)
         peaks.append(float(torque.max()))
-        system, _ = tv.operated(changed, torque=1000.0, gear=12)
+        system, _ = tv.at_operating_point(changed, torque=1000.0, gear=12)
         modes = tv.modal(system)
         clutch = int(modes.elastic_share.sel(element="clutch").argmax("mode"))  # the mode in which it works most
         expected.append(float(tv.order_speed(modes.frequency[clutch], 3)) / tv.RPM)

@@ -10,7 +10,7 @@ INERTIA = 0.15
 def crank_twist(truck: tv.Model, damping: float, inertia: float = INERTIA) -> tuple[np.ndarray, np.ndarray]:
     """Twist from the free end to the flywheel for 1 Nm of excitation at throw 1, over frequency."""
     ring = {"ring": tv.Inertia(inertia), "silicone": tv.Damper("ring", "damper_hub", damping)} if inertia else {}
-    system, _ = tv.operated(truck.joined(ring), torque=1500.0, gear=12)
+    system, _ = tv.at_operating_point(truck.joined(ring), torque=1500.0, gear=12)
     frequency = np.linspace(150.0, 420.0, 1081)
     angle = tv.harmonic_response(system, tv.Excitation.unit("throw1", [1.0], 2 * np.pi * frequency)).angle
     return frequency, abs(angle.sel(node="damper_hub") - angle.sel(node="primary")).values[:, 0]

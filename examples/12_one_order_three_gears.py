@@ -19,7 +19,7 @@ def main(target: Path = Path("out/three_gears.png")) -> dict[str, float]:
     print(f"written: {target}")
     for gear, rpm in peak.items():
         # the clutch mode of that gear, from the modes: 20 f rpm is the third order's speed
-        modes = tv.modal(tv.operated(truck, 1500.0, gear)[0])
+        modes = tv.modal(tv.at_operating_point(truck, 1500.0, gear)[0])
         mode = 20 * float(modes.frequency[int(modes.elastic_share.sel(element="clutch").argmax("mode"))])
         print(f"gear {gear:>2}: peak at {rpm:.0f} rpm, clutch mode at {mode:.0f} rpm")
         assert abs(rpm / mode - 1) < 0.03

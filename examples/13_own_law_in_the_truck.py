@@ -33,7 +33,7 @@ def main() -> dict[str, float]:
     springs = Hardening(scale=1000.0, bend=0.1)
     assert springs.slope_error(np.linspace(-0.3, 0.3, 61)) < 1e-8  # the derivatives are those of the torque
     truck = tv.load_model("examples/truck_dmf.yaml").replaced("dmf", law=springs)
-    system, point = tv.operated(truck, torque=1500.0)
+    system, point = tv.at_operating_point(truck, torque=1500.0)
     at = point.names.index("dmf")
     print(f"at 1500 Nm {np.degrees(point.angle[at]):.2f}°, tangent {point.stiffness[at] / 1e3:.2f} kNm/rad")
     # sinh turned about; and cosh² = 1 + sinh²

@@ -13,7 +13,7 @@ def main(folder: Path = Path("examples")) -> dict[str, float]:
         except tv.ModelError as error:  # one bad file is told and does not stop the others
             print(f"{file.name}: {error}")
             continue
-        system, _ = tv.operated(truck, torque=1500.0)
+        system, _ = tv.at_operating_point(truck, torque=1500.0)
         modes = tv.modal(system, speed=1200 * tv.RPM)  # the speed matters to pendulums alone
         mode = int(modes.elastic_share.sel(element="clutch").argmax("mode"))
         clutch[file.stem] = 20 * float(modes.frequency[mode])

@@ -7,7 +7,7 @@ import torsional as tv
 
 def main() -> dict[str, float]:
     truck = tv.load_model("examples/truck_dmf.yaml")
-    system, point = tv.operated(truck, torque=1500.0)
+    system, point = tv.at_operating_point(truck, torque=1500.0)
     modes = tv.modal(system)
     for name, shown in {"truck": truck, "system": system, "point": point, "modes": modes}.items():
         print(f"{name:7s} a page of {len(shown._repr_html_())} letters, in a line: {repr(shown)[:70].splitlines()[0]}")

@@ -21,7 +21,7 @@ PUBLIC = [getattr(torsional, name) for name in torsional.__all__]
 FUNCTIONS = [thing for thing in PUBLIC if inspect.isfunction(thing)]
 FUNCTIONS += [branches.coexisting, branches.solutions_at, branches.without_stable]
 FUNCTIONS += [region.stretches, subharmonic.sought_region, subharmonic.within]
-GIVEN_BACK = (torsional.System, torsional.OperatingPoint, torsional.State)  # made by functions alone
+GIVEN_BACK = (torsional.System, torsional.OperatingPoint, torsional.MotionState)  # made by functions alone
 CLASSES = [
     thing for thing in PUBLIC if inspect.isclass(thing) and dataclasses.is_dataclass(thing) and thing not in GIVEN_BACK
 ]
@@ -35,7 +35,7 @@ class Stranger:
 def things() -> dict[str, Any]:
     """A model and what is made of it, by name."""
     model = torsional.load_model(TRUCK)
-    system, point = torsional.operated(model, 1000.0)
+    system, point = torsional.at_operating_point(model, 1000.0)
     drive = torsional.engine_drive(model, 1000 * RPM, 1000.0)
     return {"model": model, "system": system, "point": point, "drive": drive, "powertrain": model.powertrain()}
 

@@ -62,9 +62,10 @@ def test_ends_of_other_names_are_joined_rigidly(truck: tv.Model) -> None:
     assert own.landmarks.springs == ()
     assert (own.absorber.kind, own.absorber_mode) == ("single mass flywheel", "absorber mode")
     for gear in (1, 12):
-        pair = [tv.modal(tv.operated(m, 1500.0, gear)[0]).frequency.values for m in (own, single)]
+        pair = [tv.modal(tv.at_operating_point(m, 1500.0, gear)[0]).frequency.values for m in (own, single)]
         assert pair[0] == pytest.approx(pair[1], rel=1e-9, abs=1e-6)
-    assert tv.operated(own.with_absorber(truck.absorber), 0.0)[0].hash == tv.operated(truck, 0.0)[0].hash
+    back = own.with_absorber(truck.absorber)
+    assert tv.at_operating_point(back, 0.0)[0].hash == tv.at_operating_point(truck, 0.0)[0].hash
 
 
 def test_absorbers_refused(truck: tv.Model) -> None:

@@ -13,7 +13,7 @@ def truck() -> tv.Model:
 
 
 def test_objects_tell_what_they_are_in_a_line(truck: tv.Model) -> None:
-    system, _ = tv.operated(truck, 1500.0)
+    system, _ = tv.at_operating_point(truck, 1500.0)
     for shown, told in (
         (truck, "38 components, dual mass flywheel, gears 1, 2"),
         (truck.powertrain(), "40 components on 18 nodes"),
@@ -25,7 +25,7 @@ def test_objects_tell_what_they_are_in_a_line(truck: tv.Model) -> None:
 
 
 def test_tables_have_units(truck: tv.Model) -> None:
-    system, point = tv.operated(truck, 1500.0)
+    system, point = tv.at_operating_point(truck, 1500.0)
     assert "<td>dmf</td><td>Coupling</td><td>a secondary, b primary, law Hinges, damping" in truck._repr_html_()
     assert "<td>half_shafts</td><td>100 kNm/rad</td>" in system._repr_html_()
     # 1500 Nm on 13 kNm/rad

@@ -10,8 +10,8 @@ from .absorbers import (
     StraightSprings as StraightSprings,
     arc_spring_flywheel as arc_spring_flywheel,
     cancellation_frequency as cancellation_frequency,
-    characteristic as characteristic,
-    condensed as condensed,
+    spring_characteristic as spring_characteristic,
+    condensed_flywheel as condensed_flywheel,
     dual_mass_flywheel as dual_mass_flywheel,
     planetary_dual_mass_flywheel as planetary_dual_mass_flywheel,
     power_split_absorber as power_split_absorber,
@@ -70,7 +70,7 @@ from .quantities import (
     acceleration as acceleration,
     amplitude as amplitude,
     angular_velocity as angular_velocity,
-    bound as bound,
+    order_sum as order_sum,
     dominant_element as dominant_element,
     irregularity as irregularity,
     named_modes as named_modes,
@@ -87,7 +87,7 @@ from .solvers.harmonic import harmonic_response as harmonic_response
 from .solvers.hysteresis import hysteresis as hysteresis, model_hysteresis as model_hysteresis
 from .solvers.map import response_map as response_map
 from .solvers.modal import damped_modes as damped_modes, modal as modal
-from .solvers.operating import operated as operated
+from .solvers.operating import at_operating_point as at_operating_point
 from .solvers.periodic import (
     Load as Load,
     Variation as Variation,
@@ -103,7 +103,7 @@ from .solvers.transient import (
     Governor as Governor,
     OrderTorques as OrderTorques,
     SpeedProfile as SpeedProfile,
-    State as State,
+    MotionState as MotionState,
     TorqueHistory as TorqueHistory,
     certified as certified,
     crank_angle_of as crank_angle_of,
@@ -112,7 +112,7 @@ from .solvers.transient import (
     stage_changes as stage_changes,
     steady_map as steady_map,
     steady_state as steady_state,
-    swept as swept,
+    steady_sweep as steady_sweep,
     transient as transient,
     windowed_rms as windowed_rms,
 )

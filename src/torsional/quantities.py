@@ -86,7 +86,7 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
 
 
 @checked
-def bound(orders: xr.DataArray) -> xr.DataArray:
+def order_sum(orders: xr.DataArray) -> xr.DataArray:
     """Σ_n |X_n|: no signal with these orders swings further; it is a bound and not the swing."""
     return abs(orders).sum("order").assign_attrs({**orders.attrs, "amplitude": "bound, sum of 0-peak orders"})
 

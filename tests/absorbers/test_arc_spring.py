@@ -14,8 +14,8 @@ from torsional.absorbers import (
     CoilSpring,
     GuideFriction,
     arc_spring_flywheel,
-    characteristic,
-    condensed,
+    condensed_flywheel,
+    spring_characteristic,
 )
 from torsional.components import Coupling, Inertia
 from torsional.errors import ModelError
@@ -69,7 +69,7 @@ def test_sections_make_the_spring() -> None:
 
 @pytest.mark.parametrize("design", [PLAIN, STAGED, PRELOADED], ids=["plain", "staged", "preloaded"])
 def test_characteristic_is_the_static_solution_of_the_rows(design: ArcSprings) -> None:
-    system, law = assemble(Powertrain(arc_spring_flywheel(design).components)), characteristic(design)
+    system, law = assemble(Powertrain(arc_spring_flywheel(design).components)), spring_characteristic(design)
     torques = np.array([-2500.0, -400.0, 8.0, 700.0, 1500.0, 4000.0, 9000.0])
     point = equilibrium(system, {"primary": torques}, hold="secondary")
     travel = point.angle[:, point.names.index("dmf")]
@@ -78,7 +78,7 @@ def test_characteristic_is_the_static_solution_of_the_rows(design: ArcSprings) -
 
 def test_stages_by_hand() -> None:
     """Outer springs after their clearances, inner ones later by what they are shorter, tabs in series with each."""
-    law = characteristic(STAGED)
+    law = spring_characteristic(STAGED)
     tab = 0.5 * (1.28 - 0.19 / 0.15)
     outer, inner = (4 / (1 / (k * 0.15**2) + 2e-6) for k in (90e3, 180e3))
     assert law.gaps[:2] == pytest.approx((tab + 0.01, tab + 0.01 + 0.03 / 0.15), rel=1e-12)
@@ -139,11 +139,11 @@ def test_friction_without_a_friction_of_its_own() -> None:
 
 
 def test_condensed_flywheel() -> None:
-    absorber = condensed(STAGED)
+    absorber = condensed_flywheel(STAGED)
     primary, dmf = absorber.components["primary"], absorber.components["dmf"]
     assert isinstance(primary, Inertia) and isinstance(dmf, Coupling)
     assert primary.inertia == pytest.approx(1.14 + 4 * (0.48 + 0.16) * 0.15**2)
-    assert dmf.law == characteristic(STAGED)
+    assert dmf.law == spring_characteristic(STAGED)
     assert dmf.damping == pytest.approx(4 * 0.1 * sum((i / 8) ** 2 for i in range(9)))
     assert absorber.kind.startswith("dual mass flywheel")
     assert {**absorber.components, **absorber.detail} == dict(arc_spring_flywheel(STAGED).components)

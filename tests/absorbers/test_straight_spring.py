@@ -15,8 +15,8 @@ from torsional.absorbers import (
     CoilSpring,
     GuideFriction,
     StraightSprings,
-    characteristic,
-    condensed,
+    condensed_flywheel,
+    spring_characteristic,
     straight_spring_flywheel,
     with_pendulum,
 )
@@ -136,7 +136,7 @@ def test_accelerations_are_those_of_the_benchmark() -> None:
 @pytest.mark.parametrize("design", [LOOSE, NESTED, PRELOADED, RUBBING], ids=["loose", "nested", "preload", "rubbing"])
 def test_characteristic_is_the_static_solution_of_the_rows(design: StraightSprings) -> None:
     """Newton's method on all shoes, tabs and stops against the closed form, from free play to the end stop."""
-    system, law = assemble(Powertrain(straight_spring_flywheel(design).components)), characteristic(design)
+    system, law = assemble(Powertrain(straight_spring_flywheel(design).components)), spring_characteristic(design)
     torques = np.array([-9e3, -1500.0, -700.0, -60.0, 3.0, 90.0, 400.0, 1100.0, 2500.0, 2e4])
     point = equilibrium(system, {"primary": torques}, hold="secondary")
     travel = point.angle[:, point.names.index("dmf")]
@@ -146,7 +146,7 @@ def test_characteristic_is_the_static_solution_of_the_rows(design: StraightSprin
 
 def test_characteristic_by_hand() -> None:
     """One channel, drive side: free play, then six springs and two tabs one behind the other, solid coils, end stop."""
-    law = characteristic(changed(channels=1, play_factors=(), stop_angle=0.64))
+    law = spring_characteristic(changed(channels=1, play_factors=(), stop_angle=0.64))
     play, row = 0.002 + 6 * 0.002 + 0.008, 1 / (6 / 10500 + 2 / 1e6)
     solid = play + 10500 * 0.1 / row
     bound = 1 / (6 / (10500 + 5e5) + 2 / 1e6)
@@ -154,22 +154,22 @@ def test_characteristic_by_hand() -> None:
     np.testing.assert_allclose(law.tangent([0.01, 0.3, 0.63, 0.7]), [0, row, bound, bound + 2e6], rtol=1e-9)
     assert law.stops == pytest.approx((-solid, solid))
     assert law.torque(-0.3) == -law.torque(0.3) == pytest.approx(-row * (0.3 - play))
-    assert characteristic(changed(stop_angle=0.3)).stops == (-0.3, 0.3)
+    assert spring_characteristic(changed(stop_angle=0.3)).stops == (-0.3, 0.3)
 
 
 def test_preload_holds_until_its_torque() -> None:
     """48 mrad too much in each channel: held by both tabs at rest, by one of them when the row leaves the other."""
-    law = characteristic(PRELOADED)
+    law = spring_characteristic(PRELOADED)
     rest, left = (2 * 0.048 / (6 / 10500 + tabs * 1e-6) for tabs in (2, 1))
     start, end = 0.02 - rest / 2e6, 0.02 + left / 2e6
     assert law.gaps[:2] == pytest.approx((start, end), rel=1e-12)
     assert law.torque([start, end]).tolist() == pytest.approx([0.0, left], abs=1e-9)
-    assert float(law.tangent(0.1)) == pytest.approx(float(characteristic(LOOSE).tangent(0.1)), rel=1e-12)
+    assert float(law.tangent(0.1)) == pytest.approx(float(spring_characteristic(LOOSE).tangent(0.1)), rel=1e-12)
     assert float(law.tangent(start + 1e-5)) > 100 * float(law.tangent(0.1))
 
 
 def test_inner_springs_are_a_stage() -> None:
-    law = characteristic(dataclasses.replace(NESTED, play_factors=()))
+    law = spring_characteristic(dataclasses.replace(NESTED, play_factors=()))
     soft, stiff = (2 / (6 / k + 2 / 1e6) for k in (10500.0, 31500.0))
     assert [float(law.tangent(x)) for x in (0.2, 0.4)] == pytest.approx([soft, stiff], rel=1e-9)
     assert law.stage_name(0.2) == "stage 1" and law.stage_name(0.4) == "stage 2"
@@ -221,19 +221,19 @@ def test_spring_masses_ride_with_their_shoes() -> None:
 
 
 def test_condensed_flywheel_keeps_inertia_law_and_grease() -> None:
-    absorber = condensed(LOOSE)
+    absorber = condensed_flywheel(LOOSE)
     dmf: Any = absorber.components["dmf"]
     assert sorted(absorber.components) == ["dmf", "primary", "secondary"]
-    assert dmf.law == characteristic(LOOSE) and (dmf.a, dmf.b) == ("secondary", "primary")
+    assert dmf.law == spring_characteristic(LOOSE) and (dmf.a, dmf.b) == ("secondary", "primary")
     primary: Any = absorber.components["primary"]
     assert primary.inertia == pytest.approx(1.8 + 2 * (2 * 0.003 + 5 * 0.00384))
     sliding = 2 * sum(0.3 * (i / 6) ** 2 for i in range(7))  # each shoe with its share of the way
     assert dmf.damping == pytest.approx(sliding)
-    assert condensed(changed(damping=20.0)).components["dmf"] == dataclasses.replace(dmf, damping=20.0)
+    assert condensed_flywheel(changed(damping=20.0)).components["dmf"] == dataclasses.replace(dmf, damping=20.0)
 
 
 def test_detail_takes_the_place_of_the_condensed_parts() -> None:
-    absorber = condensed(LOOSE)
+    absorber = condensed_flywheel(LOOSE)
     whole = {**absorber.components, **absorber.detail}
     assert whole == dict(straight_spring_flywheel(LOOSE).components)
     assert "secondary" not in absorber.detail and isinstance(whole["shoe_1_1_guide"], Damper)
@@ -286,5 +286,5 @@ def test_parts_that_cannot_be_built_are_refused() -> None:
 
 
 def test_a_rated_torque_that_is_carried_is_accepted() -> None:
-    law = characteristic(changed(rated_torque=2092.0))
+    law = spring_characteristic(changed(rated_torque=2092.0))
     assert float(law.torque(law.stops[1])) == pytest.approx(2092.33, abs=0.01)

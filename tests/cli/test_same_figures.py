@@ -13,12 +13,12 @@ import pytest
 
 from torsional.files import changed, load_model
 from torsional.numerics.arrays import Array
-from torsional.quantities import acceleration, bound, order_speed, swing
+from torsional.quantities import acceleration, order_speed, order_sum, swing
 from torsional.solvers.campbell import campbell
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import damped_modes, modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.units import RPM
 
 Run = Callable[..., Any]
@@ -41,7 +41,7 @@ def array(told: dict[str, Any]) -> Array:
 
 def test_modes(torsional: Run, truck: str) -> None:
     told = result(torsional, "modes", truck, "--gear", "11", "--torque", "1800 Nm", "--order", "6")
-    system, _ = operated(load_model(truck), 1800.0, "11")
+    system, _ = at_operating_point(load_model(truck), 1800.0, "11")
     expected, damped = modal(system, 900 * RPM), damped_modes(system, 900 * RPM)
     for name in ("frequency", "shape", "elastic_share", "kinetic_share", "damping_ratio"):
         np.testing.assert_array_equal(told[name][0], expected[name].values)
@@ -62,7 +62,7 @@ def test_respond_at_full_load(torsional: Run, truck: str, variant: str) -> None:
     speeds = 700 * RPM + 200 * RPM * np.arange(7)
     for i, speed in enumerate(speeds):
         torque = float(model.engine.full_load_torque(speed))
-        system, _ = operated(model, torque)
+        system, _ = at_operating_point(model, torque)
         alone = harmonic_response(system, model.engine.excitation(model.landmarks.throws, [speed], [torque], orders))
         nodes = [model.landmarks.crankshaft, model.landmarks.input]
         angle, twist = alone.angle.sel(node=nodes), alone.torque.sel(element=[*model.landmarks.springs, "clutch"])
@@ -70,7 +70,7 @@ def test_respond_at_full_load(torsional: Run, truck: str, variant: str) -> None:
         np.testing.assert_array_equal(told["torque"][i], twist.values[0])
         assert told["mean_torque"][i] == torque
         # a sum over orders, taken here in another order of addition
-        np.testing.assert_allclose(told["acceleration_bound"][i], bound(acceleration(angle)).values[0], rtol=4e-15)
+        np.testing.assert_allclose(told["acceleration_bound"][i], order_sum(acceleration(angle)).values[0], rtol=4e-15)
 
 
 def test_respond_at_one_torque(torsional: Run, truck: str) -> None:
@@ -78,7 +78,7 @@ def test_respond_at_one_torque(torsional: Run, truck: str) -> None:
         torsional, "respond", truck, "--torque", "1200 Nm", "--node", "wheels", "--element", "tyres", "--order", "3"
     )
     model = load_model(truck)
-    speeds, system = model.speeds(141), operated(model, 1200.0)[0]
+    speeds, system = model.speeds(141), at_operating_point(model, 1200.0)[0]
     found = harmonic_response(
         system, model.engine.excitation(model.landmarks.throws, speeds, np.full(141, 1200.0), [3.0])
     )
@@ -86,7 +86,7 @@ def test_respond_at_one_torque(torsional: Run, truck: str) -> None:
     np.testing.assert_array_equal(told["angle"], found.angle.sel(node=["wheels"]).values)
     np.testing.assert_array_equal(told["torque"], found.torque.sel(element=["tyres"]).values)
     np.testing.assert_array_equal(told["acceleration_swing"], swing(moved).values)
-    np.testing.assert_array_equal(told["acceleration_bound"], bound(moved).values)
+    np.testing.assert_array_equal(told["acceleration_bound"], order_sum(moved).values)
 
 
 def test_map_in_json_netcdf_and_csv(torsional: Run, truck: str) -> None:
@@ -97,7 +97,7 @@ def test_map_in_json_netcdf_and_csv(torsional: Run, truck: str) -> None:
     for i in range(2):
         one = expected.isel(gear=[i])
         np.testing.assert_array_equal(told["acceleration_swing"][[i]], swing(acceleration(one.angle)).values)
-        np.testing.assert_array_equal(told["torque_bound"][[i]], bound(one.torque).values)
+        np.testing.assert_array_equal(told["torque_bound"][[i]], order_sum(one.torque).values)
     np.testing.assert_array_equal(told["mean_twist"], expected.mean_twist.values)
     np.testing.assert_array_equal(told["within_full_load"], expected.within_full_load.values)
     with Path("m.csv").open(encoding="utf-8-sig", newline="") as file:
@@ -121,7 +121,7 @@ def test_campbell(torsional: Run, truck: str) -> None:
 def test_check(torsional: Run, truck: str) -> None:
     told = torsional("check", truck, "--set", "absorber.damping=30", "--gear", "11", "--torque", "900 Nm", "--json")
     document = json.loads(told.out)
-    system, point = operated(changed(load_model(truck), {"absorber.damping": 30}), 900.0, "11")
+    system, point = at_operating_point(changed(load_model(truck), {"absorber.damping": 30}), 900.0, "11")
     for row in document["equilibrium"]:
         i = point.names.index(row["connection"])
         assert row["travel"]["value"] == point.angle[i]

@@ -11,7 +11,7 @@ from scipy.linalg import eigh
 from tests.shipped import MODEL_FILES
 
 from torsional.files import load_model, starter, warnings_of
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.system import assemble
 
 TRUCKS = [path for path in MODEL_FILES if path.stem.startswith("truck")]
@@ -93,7 +93,7 @@ def test_car_sits_on_its_stages() -> None:
     """At 150 Nm the arc springs are on the first stage, at 350 Nm on the second, given per degree."""
     car = load_model(example("passenger_car_dmf"))
     for torque, stage in ((150.0, 9.0), (350.0, 28.0)):
-        system, _ = operated(car, torque, "5")
+        system, _ = at_operating_point(car, torque, "5")
         found = system.connections.stiffness[system.connections.names.index("dmf")]
         assert found == pytest.approx(stage * 180 / np.pi, rel=1e-12)
 
@@ -104,4 +104,4 @@ def test_starter_models_load(kind: str, tmp_path: Path) -> None:
     path.write_text(starter(kind), encoding="utf-8")
     model = load_model(path)
     assert warnings_of(model) == []
-    operated(model, float(model.torques(3)[1]))
+    at_operating_point(model, float(model.torques(3)[1]))

@@ -22,7 +22,7 @@ from torsional.quantities import named_modes, swing
 from torsional.solvers.equilibrium import linearize
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import mean_state, operated
+from torsional.solvers.operating import at_operating_point, mean_state
 from torsional.solvers.run_up import run_up_response
 from torsional.system import assemble
 from torsional.units import RPM
@@ -108,7 +108,7 @@ def test_stuck_washers_are_springs_in_linear_analyses(gear: str) -> None:
     stiffer = changed(TRUCK, {"clutch.stiffness": 25e3 + STUCK, "absorber.stiffness": 13e3 + 40.0 / np.radians(0.1)})
     stiffer = changed(stiffer, {"absorber.stop_torque": None, "absorber.stop_stiffness": None})
     rubbing = changed(RUBBING, {"absorber.stop_torque": None, "absorber.stop_stiffness": None})
-    (system, point), (other, _) = operated(rubbing, 1800.0, gear), operated(stiffer, 1800.0, gear)
+    (system, point), (other, _) = at_operating_point(rubbing, 1800.0, gear), at_operating_point(stiffer, 1800.0, gear)
     twist = dict(zip(point.names, point.angle, strict=True))
     for spring, stiffness in (("clutch", 25e3), ("dmf", 13e3)):
         assert [twist[spring], twist[f"{spring}_friction"]] == pytest.approx([1800.0 / stiffness] * 2, rel=1e-12)

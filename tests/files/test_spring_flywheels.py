@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.shipped import EXAMPLES, shipped
 
-from torsional.absorbers import ArcSprings, CoilSpring, GuideFriction, StraightSprings, condensed
+from torsional.absorbers import ArcSprings, CoilSpring, GuideFriction, StraightSprings, condensed_flywheel
 from torsional.cli import main
 from torsional.errors import ModelError
 from torsional.files import changed, expanded, model_from_document, warnings_of
@@ -19,7 +19,7 @@ from torsional.model import Model
 from torsional.quantities import named_modes
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.system import assemble
 
 STRAIGHT, ARC = (shipped(f"truck_dmf_{kind}_spring") for kind in ("straight", "arc"))
@@ -71,7 +71,7 @@ def law(model: Model) -> Any:
 
 @pytest.mark.parametrize(("model", "design"), [(STRAIGHT, STRAIGHT_DESIGN), (ARC, ARC_DESIGN)], ids=["straight", "arc"])
 def test_a_file_says_what_a_design_says(model: Model, design: StraightSprings | ArcSprings) -> None:
-    absorber = condensed(design)
+    absorber = condensed_flywheel(design)
     assert {name: model.components[name] for name in absorber.components} == dict(absorber.components)
     whole = model.detailed().components
     assert {name: whole[name] for name in model.detail} == dict(absorber.detail)
@@ -111,7 +111,7 @@ def test_detail_is_a_machine_of_the_same_inertia(model: Model) -> None:
 def test_linear_analyses_see_two_flywheels(model: Model, name: str, torque: float) -> None:
     """The truck whose flywheel is given by its law has, within the law's half per cent, the same modes and answer."""
     plain = shipped(name)
-    found, expected = (modal(operated(m, torque)[0], 100.0) for m in (model, plain))
+    found, expected = (modal(at_operating_point(m, torque)[0], 100.0) for m in (model, plain))
     assert found.frequency.size == expected.frequency.size
     np.testing.assert_allclose(found.frequency, expected.frequency, rtol=2e-3, atol=1e-6)
     names = named_modes(found, model.mode_groups)
@@ -122,7 +122,7 @@ def test_linear_analyses_see_two_flywheels(model: Model, name: str, torque: floa
 
 @BOTH
 def test_without_load_they_are_loose(model: Model) -> None:
-    system, point = operated(model, 0.0)
+    system, point = at_operating_point(model, 0.0)
     assert point.stage("dmf") == "free play"
     assert point.stiffness[point.names.index("dmf")] == 0.0
     assert (modal(system, 100.0).frequency < 1e-6).sum() == 2

@@ -16,10 +16,10 @@ from torsional.errors import ModelError
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.plots.maps import colour_limits
-from torsional.quantities import bound, swing
+from torsional.quantities import order_sum, swing
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.units import RPM
 
 
@@ -57,7 +57,7 @@ def test_resonance_speeds(interference: xr.Dataset, names: dict[str, list[str]])
 
 
 def test_mode_shapes_are_referred_to_engine_speed(truck: Model) -> None:
-    modes = modal(operated(truck, 2500.0, "8")[0])
+    modes = modal(at_operating_point(truck, 2500.0, "8")[0])
     figure = plots.plot_mode_shapes(modes, truck.powertrain("8"), chosen=[4])
     (line,) = [line for line in figure.axes[0].lines if "Hz" in str(line.get_label())]
     ticks = [t.get_text() for t in figure.axes[0].get_xticklabels()]
@@ -113,7 +113,7 @@ def test_cycle_lies_between_the_bounds(orders: xr.DataArray) -> None:
     axes = plots.plot_cycle(here, shown=[3.0]).axes[0]
     signal = np.asarray(next(line for line in axes.lines if "half" in str(line.get_label())).get_ydata())
     assert 0.5 * np.ptp(signal) == pytest.approx(float(swing(here)), rel=1e-6)
-    most = float(bound(here))
+    most = float(order_sum(here))
     assert np.abs(signal).max() <= most
     assert any(np.allclose(line.get_ydata(), most) for line in axes.lines)  # type: ignore[arg-type]
     assert axes.get_xlim() == (0, 720)

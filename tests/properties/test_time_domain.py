@@ -22,7 +22,7 @@ from torsional.numerics.exact_contacts import ExactContacts
 from torsional.numerics.stepping import Entry, Settings, Status, begin, march
 from torsional.powertrain import Powertrain
 from torsional.solvers.harmonic import harmonic_response
-from torsional.solvers.transient import State, TorqueHistory, transient
+from torsional.solvers.transient import MotionState, TorqueHistory, transient
 from torsional.solvers.transient.marching import LEDGER, Accuracy, marched
 from torsional.solvers.transient.problem import Problem
 from torsional.system import System, assemble
@@ -79,10 +79,10 @@ def machine(net: Network, seed: int, *, rub: bool = True, of: Mirror = lambda la
     return parts
 
 
-def thrown(system: System, seed: int, speed: float = 1.0) -> State:
+def thrown(system: System, seed: int, speed: float = 1.0) -> MotionState:
     """A start with random rates [rad/s] of the coordinates."""
     rates = np.random.default_rng(seed + 7).standard_normal(len(system.coordinates)) * speed
-    return State.at_rest(system).moved(0.0, rates)
+    return MotionState.at_rest(system).moved(0.0, rates)
 
 
 def energy(net: Network, run: xr.Dataset) -> np.ndarray:
@@ -178,7 +178,7 @@ def test_the_distance_to_the_linear_response_falls_with_the_square_of_the_step(s
     np.testing.assert_allclose(np.log2(np.array(missed[:-1]) / missed[1:]), 2.0, atol=0.02)
 
 
-def exact(system: System, start: State, times: np.ndarray) -> tuple[np.ndarray, int]:
+def exact(system: System, start: MotionState, times: np.ndarray) -> tuple[np.ndarray, int]:
     """Node angles from event to event, and how many events there were."""
     K, rows, numbers = system.K.copy(), [], []
     for row, law in zip(system.connections.weights, system.connections.laws, strict=True):
@@ -248,7 +248,7 @@ def mirrored(law: Law) -> Law:
 def test_sign(seed: int) -> None:
     net = gentle(np.random.default_rng(seed), 3 + seed)
     one, two = (assemble(Powertrain(machine(net, seed, of=of))) for of in (lambda law: law, mirrored))
-    backward = State.at_rest(two).moved(0.0, -thrown(one, seed).speed)
+    backward = MotionState.at_rest(two).moved(0.0, -thrown(one, seed).speed)
     x, y = run_of(one, seed), run_of(two, seed, load=-50.0, start=backward)
     for name in ("angle", "torque", "acceleration"):
         assert apart(x[name].values, -y[name].values) <= 1e-12
@@ -264,7 +264,7 @@ def test_order_of_parts(seed: int) -> None:
     one, two = assemble(Powertrain(parts)), assemble(Powertrain({name: parts[name] for name in names}))
     rates = one.T @ thrown(one, seed).speed
     at = [two.node_index(node) for node in one.nodes]
-    start = State.at_rest(two).moved(0.0, np.linalg.lstsq(two.T[at], rates, rcond=None)[0])
+    start = MotionState.at_rest(two).moved(0.0, np.linalg.lstsq(two.T[at], rates, rcond=None)[0])
     x, y = run_of(one, seed), run_of(two, seed, start=start)
     assert apart(y.angle.sel(node=x.node.values).values, x.angle.values) <= 1e-12
 
@@ -349,10 +349,10 @@ def test_a_run_goes_on_from_its_result(seed: int) -> None:
 STOPS = Hinges(0.0, (0.01, -0.01), (1.0, -1.0), (1e8, 1e8))
 
 
-def between_stops(law: Law) -> tuple[System, State]:
+def between_stops(law: Law) -> tuple[System, MotionState]:
     """0.003 kgm² at 1 rad/s."""
     system = assemble(Powertrain({"mass": Inertia(0.003), "stops": Coupling("ground", "mass", law)}))
-    return system, State.at_rest(system).moved(0.0, np.ones(1))
+    return system, MotionState.at_rest(system).moved(0.0, np.ones(1))
 
 
 @pytest.mark.parametrize("radius", [1.0, 0.8, 0.5])
@@ -383,7 +383,7 @@ def test_bristles_create_no_energy(seed: int) -> None:
     law = LuGre(float(10 ** rng.uniform(3, 5)), 1.0, sliding, float(rng.uniform(1, 1.5)) * sliding, 0.01)
     parts = {"m": Inertia(1.0), "s": Shaft("ground", "m", k), "f": Coupling("ground", "m", law)}
     system = assemble(Powertrain(parts))
-    run = transient(system, (), 2.0, State.at_rest(system).moved(0.1, 0.0), speed=0.0, spectral_radius=1.0)
+    run = transient(system, (), 2.0, MotionState.at_rest(system).moved(0.1, 0.0), speed=0.0, spectral_radius=1.0)
     z, q, v = run.memory.values[:, 0], run.angle.values[:, 0], run.angular_velocity.values[:, 0]
     stored = 0.5 * (v**2 + k * q**2 + law.bristle_stiffness * z**2)
     cycle = round(2 * np.pi / np.sqrt(k) / 1e-4)
@@ -394,7 +394,9 @@ def test_bristles_create_no_energy(seed: int) -> None:
     assert lost > 1e-4 * stored[0] and abs(made) < 1e-6 * lost
 
 
-def never_more(system: System, start: State, energy_of: Callable[[xr.Dataset], np.ndarray], **given: object) -> None:
+def never_more(
+    system: System, start: MotionState, energy_of: Callable[[xr.Dataset], np.ndarray], **given: object
+) -> None:
     """A free run is refused or ends with no more energy than it began with, give or take the 1 % that is told."""
     try:
         run = transient(system, (), 1.0, start, speed=0.0, **given)  # type: ignore[arg-type]
@@ -434,7 +436,7 @@ def test_bristles_that_a_step_cannot_follow_are_no_source_of_energy(
         q, v = run.angle.values[:, 0], run.angular_velocity.values[:, 0]
         return np.asarray(0.5 * (v**2 + 100.0 * q**2))
 
-    never_more(system, State.at_rest(system).moved(0.0, 1.0), energy_of, step=step, spectral_radius=radius)
+    never_more(system, MotionState.at_rest(system).moved(0.0, 1.0), energy_of, step=step, spectral_radius=radius)
 
 
 # --- what would only come back as numbers that are none ---
@@ -479,13 +481,13 @@ def test_starts_and_torques_that_are_no_numbers_are_refused() -> None:
 def test_energy_beyond_all_numbers_is_refused() -> None:
     system = assemble(Powertrain({"m": Inertia(1.0), "s": Shaft("ground", "m", 100.0)}))
     with pytest.raises(ModelError):
-        transient(system, (), 0.01, State.at_rest(system).moved(0.0, 1e160), speed=0.0)
+        transient(system, (), 0.01, MotionState.at_rest(system).moved(0.0, 1e160), speed=0.0)
 
 
 @pytest.mark.parametrize("deep", [0.001, 1.0])
 def test_a_start_deep_in_a_stop_gets_out_with_no_more_energy_than_it_had(deep: float) -> None:
     system, _ = between_stops(STOPS)
-    start = State.at_rest(system).moved(0.01 + deep, 0.0)
+    start = MotionState.at_rest(system).moved(0.01 + deep, 0.0)
     try:
         run = transient(system, (), 0.01, start, speed=0.0, step=1e-4)
     except ModelError as refused:

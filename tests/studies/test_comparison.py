@@ -7,7 +7,7 @@ import pytest
 
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import at_input
 from torsional.studies.claims.comparison import behind_clutch, damped
@@ -17,7 +17,7 @@ from torsional.units import RPM
 
 def solved(model: Model, speed: float, torque: float, gear: str) -> float:
     """Third-order acceleration at the gearbox input, by the plain matrices."""
-    system, _ = operated(model, torque, gear)
+    system, _ = at_operating_point(model, torque, gear)
     assert model.engine is not None
     load = model.engine.harmonics(speed, torque, [3.0])[:, 0]
     onto: Array = np.array([system.T[system.node_index(node)] for node in model.landmarks.throws])

@@ -7,7 +7,7 @@ import pytest
 
 from torsional.components import Inertia
 from torsional.engine.orders import HALF_ORDERS
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import input_shaft, main_order, responded
 from torsional.studies.claims.excitation import crossing
@@ -70,7 +70,7 @@ def test_a13_figures(outcomes: dict[str, Outcome]) -> None:
 def test_a15_by_plain_matrices(outcomes: dict[str, Outcome], trucks: Trucks, name: str, figure: str) -> None:
     """All orders solved with the matrices, their speeds added up over a cycle."""
     model, idle = getattr(trucks, name), 600 * RPM
-    system, _ = operated(model, 1300.0)
+    system, _ = at_operating_point(model, 1300.0)
     onto = np.array([system.T[system.node_index(node)] for node in model.landmarks.throws])
     row, alpha = system.T[system.node_index(model.landmarks.crankshaft)], np.linspace(0, 4 * np.pi, 721)
     velocity = np.zeros(alpha.size)

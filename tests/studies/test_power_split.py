@@ -7,7 +7,7 @@ import pytest
 
 from torsional.absorbers import cancellation_frequency
 from torsional.components import PlanetSpin
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import at_input, mean_torque, responded
 from torsional.studies.claims.planetary import at_quotient_one
@@ -72,7 +72,7 @@ def test_c3_both_ends(outcomes: dict[str, Outcome], trucks: Trucks) -> None:
 def test_c4_by_plain_matrices(trucks: Trucks) -> None:
     """Equal energies for equal motions; the planetary flywheel's own 2 by 2 inertia matrix written out."""
     split, planetary = at_quotient_one(trucks)
-    systems = [operated(model, mean_torque(model))[0] for model in (split, planetary)]
+    systems = [at_operating_point(model, mean_torque(model))[0] for model in (split, planetary)]
     nodes = systems[1].nodes
     rows = [system.T[[system.node_index(node) for node in nodes]] for system in systems]
     rng = np.random.default_rng(4)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from torsional.solvers.transient import engine_drive, swept
+from torsional.solvers.transient import engine_drive, steady_sweep
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.answers import mean_torque
 from torsional.studies.claims.friction import FAR, WASHER, curve, stepped, washed
@@ -77,7 +77,7 @@ def test_b5_a_sweep_up_and_down(trucks: Trucks, outcomes: Mapping[str, Outcome])
     model = replaced(trucks.two_stage, "dmf", damping=10.0)
     line = Stepped.of(model, 940 * RPM, 1500.0)
     torques = np.array([1450.0, 1500.0, 1550.0, 1600.0, 1650.0])
-    found = swept(
+    found = steady_sweep(
         line.system,
         lambda torque: engine_drive(model, 940 * RPM, float(torque)),
         torques,

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from torsional.engine import Excitation
 from torsional.files import load_model
 from torsional.laws import LuGre, hinge_rows
-from torsional.solvers.transient import State, engine_drive, orders_in_time, transient
+from torsional.solvers.transient import MotionState, engine_drive, orders_in_time, transient
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import starting
 from torsional.system import System, assemble
@@ -34,7 +34,7 @@ def stepped(torque: float, span: float, step: float, **given: object) -> xr.Data
     return transient(system, drive, span, hold="vehicle", step=step, **given)  # type: ignore[arg-type]
 
 
-def begun(torque: float) -> tuple[Problem, State]:
+def begun(torque: float) -> tuple[Problem, MotionState]:
     system, drive = machine(torque)
     problem = Problem.of(system, drive, SPEED, hold="vehicle")
     return problem, starting("equilibrium", system, problem.acting, "vehicle", SPEED)

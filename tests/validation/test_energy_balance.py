@@ -27,16 +27,16 @@ def model(path: Path) -> tv.Model:
     return tv.load_model(path)
 
 
-def operated(path: Path, share: float, gear: str) -> tuple[tv.System, tv.Excitation]:
+def at_operating_point(path: Path, share: float, gear: str) -> tuple[tv.System, tv.Excitation]:
     """The linear system under a share of the full torque, and what excites it: the engine, else random torques."""
     machine = model(path)
     speeds = machine.speeds(9)
     if machine.engine is None:
-        system = tv.operated(machine, 0.0)[0]
+        system = tv.at_operating_point(machine, 0.0)[0]
         torque = np.random.default_rng(1).normal(size=(2, 9, 3, len(ORDERS)))
         return system, tv.Excitation(system.nodes[2:5], ORDERS, speeds, torque[0] + 1j * torque[1])
     mean = share * float(machine.torques(2)[-1])
-    system, _ = tv.operated(machine, mean, gear)
+    system, _ = tv.at_operating_point(machine, mean, gear)
     return system, machine.engine.excitation(machine.landmarks.throws, speeds, mean, ORDERS)
 
 
@@ -57,7 +57,7 @@ def twists(path: Path, gear: str, angle: xr.DataArray) -> dict[str, tuple[tv.Con
 def test_engine_work_is_damper_heat(path: Path, share: float, end: int) -> None:
     """Order by order, in the first and the last gear: each order's work alone, since orders are orthogonal."""
     gear = model(path).gear_names[end]
-    system, excitation = operated(path, share, gear)
+    system, excitation = at_operating_point(path, share, gear)
     found = tv.harmonic_response(system, excitation)
     omega = excitation.speed[:, None] * ORDERS
     worked, apparent = np.zeros(omega.shape), np.zeros(omega.shape)
@@ -85,7 +85,7 @@ BEHIND = ("clutch_hub", "gearbox", "propeller_shaft", "half_shafts", "tyres")
 def test_power_through_the_clutch_is_lost_behind_it(path: Path) -> None:
     """The clutch gives off to its disc what hub, gearbox, shafts and tyres turn into heat, whatever the absorber."""
     gear = model(path).gear_names[len(model(path).gear_names) // 2]
-    system, excitation = operated(path, 0.7, gear)
+    system, excitation = at_operating_point(path, 0.7, gear)
     found = tv.harmonic_response(system, excitation)
     omega = excitation.speed[:, None] * ORDERS
     given = power(found.torque.sel(element="clutch").values, found.angle.sel(node="clutch_disc").values, omega)
@@ -103,7 +103,7 @@ def test_mean_torque_is_carried_to_the_wheels(path: Path, mean: float) -> None:
     machine = model(path)
     torque = mean * float(machine.torques(2)[-1]) / 400
     for gear in (machine.gear_names[0], machine.top_gear):
-        _, point = tv.operated(machine, torque, gear)
+        _, point = tv.at_operating_point(machine, torque, gear)
         carried = dict(zip(point.names, point.torque, strict=True))
         final = machine.components["final_drive"].ratio  # type: ignore[attr-defined]
         assert carried["clutch"] == pytest.approx(torque, rel=1e-11)
@@ -130,7 +130,7 @@ def test_map_and_run_up_are_responses_at_each_mean_torque(lumped: bool) -> None:
         torque = torque.sum(axis=1, keepdims=True) if lumped else torque
         nodes = ("crankshaft",) if lumped else tuple(f"throw{i}" for i in range(1, 7))
         load = tv.Excitation(nodes, ORDERS, speeds, torque)
-        wanted = tv.harmonic_response(tv.operated(machine, mean)[0], load)
+        wanted = tv.harmonic_response(tv.at_operating_point(machine, mean)[0], load)
         angle = wanted.angle.sel(node=grid.node.values).values
         assert grid.angle.values[0, number] == pytest.approx(angle, rel=1e-10)
         along = run_up_response(machine, speeds, mean, machine.top_gear, ORDERS)

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from tests.shipped import shipped
 
-from torsional import CylinderTorques, Inertia, Powertrain, State, assemble, transient
+from torsional import CylinderTorques, Inertia, MotionState, Powertrain, assemble, transient
 from torsional.engine import Engine
 
 INERTIA, START = 4.0, 600 * np.pi / 30
@@ -95,7 +95,7 @@ def by_hand() -> np.ndarray:
 def stopped() -> xr.Dataset:
     line = assemble(Powertrain({"crank": Inertia(INERTIA)}))
     drive = CylinderTorques(engine(), ("crank",), START, motored() + 1.0, level=(0.0,))
-    start = State.at_rest(line).moved(0.0, np.array([START]))
+    start = MotionState.at_rest(line).moved(0.0, np.array([START]))
     return transient(line, drive, 5.0, start, speed=0.0, output=1e-3)
 
 

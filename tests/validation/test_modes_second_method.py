@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from tests.shipped import shipped
 
 import torsional as tv
 
 
 def truck(torque: float = 1500.0) -> tv.System:
     """The shipped truck with a pendulum, linear about a mean torque."""
-    return tv.operated(tv.load_model(Path(__file__).parents[2] / "examples/truck_dmf_pendulum.yaml"), torque)[0]
+    return tv.at_operating_point(shipped("truck_dmf_pendulum"), torque)[0]
 
 
 def test_damped_modes_against_a_state_matrix() -> None:

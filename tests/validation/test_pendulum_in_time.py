@@ -13,7 +13,7 @@ from torsional.components import Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.numerics.pendulum_path import pendulum_terms, weight_terms
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import State, transient
+from torsional.solvers.transient import MotionState, transient
 from torsional.system import System, assemble
 
 ORDER, DISTANCE, INERTIA, MASS, SPEED = 3.0, 0.1 * (1 + 1 / 9), 0.5, 1.0, 100.0
@@ -26,10 +26,10 @@ def rotor(inertia: float = INERTIA, **options: object) -> System:
     return assemble(Powertrain({"rotor": Inertia(inertia), "pendulum": pendulum}))
 
 
-def from_arc(arc: float, count: int = 1) -> State:
+def from_arc(arc: float, count: int = 1) -> MotionState:
     """The pendulums pushed aside, all else at rest in the turning frame."""
     angle = np.append(0.0, np.full(count, arc / DISTANCE))
-    return State(0.0, angle, np.zeros(count + 1), np.zeros(count), np.zeros(0))
+    return MotionState(0.0, angle, np.zeros(count + 1), np.zeros(count), np.zeros(0))
 
 
 @pytest.mark.parametrize("degrees", [5.0, 30.0, 60.0])
@@ -89,7 +89,7 @@ def test_rotor_and_pendulums_move_by_their_own_equations(path: str, count: int) 
 @pytest.mark.parametrize("path", ["circular", "cycloid", "tautochrone"])
 def test_at_standstill_a_pendulum_swings_between_the_ends_of_its_path(path: str) -> None:
     line = rotor(path=path)
-    start = State.at_rest(line).moved(0.0, np.array([0.0, 20.0]))
+    start = MotionState.at_rest(line).moved(0.0, np.array([0.0, 20.0]))
     data = transient(line, (), 0.2, start, speed=0.0)
     arc = DISTANCE * data.twist.sel(element="pendulum.suspension").values
     assert data.attrs["status"] == "complete"

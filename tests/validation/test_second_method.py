@@ -206,7 +206,7 @@ def test_quantities_of_a_motion_drawn_in_time() -> None:
     assert float(tv.swing(angle)[0]) == pytest.approx(np.ptp(motion) / 2, rel=1e-3)
     assert float(tv.irregularity(angle)[0]) == pytest.approx(np.ptp(rate) / speed, rel=2e-3)
     assert float(tv.swing(tv.acceleration(angle))[0]) == pytest.approx(np.ptp(bend) / 2, rel=3e-3)
-    assert float(tv.bound(angle)[0]) >= np.ptp(motion) / 2
+    assert float(tv.order_sum(angle)[0]) >= np.ptp(motion) / 2
     alone = (theta[2] * np.exp(3j * speed * t)).real
     assert float(tv.order_share(angle, 3.0)[0]) == pytest.approx(np.mean(alone**2) / np.mean(motion**2), rel=1e-3)
 

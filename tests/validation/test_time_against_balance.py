@@ -15,7 +15,7 @@ from torsional.engine import Excitation
 from torsional.files import changed, load_model
 from torsional.model import Model
 from torsional.solvers.periodic import model_response
-from torsional.solvers.transient import engine_drive, steady_state, swept
+from torsional.solvers.transient import engine_drive, steady_state, steady_sweep
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -131,7 +131,7 @@ def test_ways_up_and_down_differ_between_the_folds() -> None:
     def drive(speed: float) -> Excitation:
         return engine_drive(model, speed, 1400.0, HIGHEST)
 
-    both = swept(system, drive, speeds * RPM, hold="vehicle", highest_order=9.0)
+    both = steady_sweep(system, drive, speeds * RPM, hold="vehicle", highest_order=9.0)
     up, down = abs(both.twist.sel(element="dmf", order=1.5)).values
     between = ((folds[0] < speeds) & (speeds < folds[1])) | ((folds[2] < speeds) & (speeds < folds[3]))
     clear = np.abs(speeds[:, None] - folds).min(axis=1) > 3.0  # next to a fold a sweep's own step may fall off

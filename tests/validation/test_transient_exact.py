@@ -12,7 +12,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Coulomb, Hinges
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import Governor, SpeedProfile, State, TorqueHistory, certified, transient
+from torsional.solvers.transient import Governor, MotionState, SpeedProfile, TorqueHistory, certified, transient
 from torsional.system import System, assemble
 
 SPEED = 900 * np.pi / 30
@@ -66,7 +66,7 @@ def spring(law: object) -> System:
 def test_free_play_by_closed_form() -> None:
     """v = 1 from the middle of 0.2, k = 100, J = 1: away for 0.1 s, π/10 s in contact, and back."""
     wall = spring(Contacts.between(-0.1, 0.1, 100.0))
-    start = State.at_rest(wall).moved(0.0, 1.0)
+    start = MotionState.at_rest(wall).moved(0.0, 1.0)
     found = transient(wall, (), 1.0, start, speed=0.0, method="exact", output=[0.1 + 0.05 * np.pi, 1.0])
     assert found.angle.values[0, 0] == pytest.approx(0.2, rel=1e-12)
     assert found.torque.values[0, 0] == pytest.approx(10.0, rel=1e-12)

@@ -13,14 +13,14 @@ from tests.shipped import shipped
 
 from torsional.files import changed
 from torsional.model import Model
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 
 SMF, DMF = (shipped(f"truck_{kind}") for kind in ("smf", "dmf"))
 
 
 def modes(model: Model, gear: int) -> tuple[np.ndarray, list[str], np.ndarray]:
     """Third-order speeds [rpm], and by mode the element with most elastic energy and its share."""
-    system, _ = operated(model, 1000.0, gear)
+    system, _ = at_operating_point(model, 1000.0, gear)
     squares, shapes = eigh(system.K, system.M)
     energy = system.connections.stiffness[:, None] * (system.connections.weights @ shapes) ** 2
     share = energy / energy.sum(axis=0)
@@ -79,7 +79,7 @@ def test_power_split_and_tuned_absorber_cancel_where_their_comments_say() -> Non
 @pytest.mark.parametrize(("speed", "inertia", "order3"), [(900, 0.10, 811), (1200, 0.05, 1148)])
 def test_switched_planets_cancel_at_two_speeds(speed: float, inertia: float, order3: float) -> None:
     """Without damping the secondary side stands still at ω² = k/(J3 g (g − 1)) with g = 2, shown by a dense solve."""
-    system, _ = operated(shipped("truck_planetary_dmf"), 1000.0, 12)
+    system, _ = at_operating_point(shipped("truck_planetary_dmf"), 1000.0, 12)
     system = system.switched(speed * np.pi / 30)
     square = 13e3 / (inertia * 2)
     assert 20 * np.sqrt(square) / (2 * np.pi) == pytest.approx(order3, abs=1.0)

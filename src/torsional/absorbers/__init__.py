@@ -8,7 +8,7 @@ from torsional.absorbers.pendulum import CentrifugalPendulum, Rollers, with_pend
 from torsional.absorbers.planetary import planetary_dual_mass_flywheel
 from torsional.absorbers.power_split import cancellation_frequency, power_split_absorber
 from torsional.absorbers.single_mass import single_mass_flywheel
-from torsional.absorbers.spring_design import characteristic, condensed
+from torsional.absorbers.spring_design import condensed_flywheel, spring_characteristic
 from torsional.absorbers.spring_parts import CoilSpring, GuideFriction
 from torsional.absorbers.straight_spring import StraightSprings, straight_spring_flywheel
 from torsional.absorbers.tuned import tuned_flange_flywheel, tuned_secondary_flywheel, tuned_stiffness
@@ -23,12 +23,12 @@ __all__ = [
     "StraightSprings",
     "arc_spring_flywheel",
     "cancellation_frequency",
-    "characteristic",
-    "condensed",
+    "condensed_flywheel",
     "dual_mass_flywheel",
     "planetary_dual_mass_flywheel",
     "power_split_absorber",
     "single_mass_flywheel",
+    "spring_characteristic",
     "straight_spring_flywheel",
     "tuned_flange_flywheel",
     "tuned_secondary_flywheel",

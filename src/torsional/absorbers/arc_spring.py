@@ -124,8 +124,8 @@ def arc_spring_flywheel(design: ArcSprings) -> Absorber:
     Nodes ``primary``, ``secondary``, ``arc_1_1`` … and ``inner_1_1`` … (channel, mass); sections ``arc_1_coil_1`` …,
     tabs ``arc_1_primary_drive`` …, friction ``arc_1_1_guide`` …, and ``dmf``, the end stop, whose angle is the travel.
     Each mass is pressed by m R Ω² + (F_left + F_right) sin(Δα/2), Δα the angle of one section.  For linear and
-    periodic analyses: `condensed`.  After Kim, Song, Hwang, Kim (Key Eng. Mat. 326–328 (2006) 1607); Wramner (Chalmers,
-    2020, §3.2).
+    periodic analyses: `condensed_flywheel`.  After Kim, Song, Hwang, Kim (Key Eng. Mat. 326–328 (2006) 1607); Wramner
+    (Chalmers, 2020, §3.2).
 
     >>> spring = CoilSpring(rate=89e3, free_length=0.19, solid_length=0.1, mass=0.49)
     >>> flywheels = {"primary_inertia": 1.1, "secondary_inertia": 1.0, "stop_angle": 0.3}

@@ -110,7 +110,7 @@ class SpringFlywheel(ABC):
 
     def _check_rating(self, rated: float) -> None:
         end = self.travel()
-        carried = float(characteristic(self).torque(end))
+        carried = float(spring_characteristic(self).torque(end))
         if rated > carried * (1 + SAME):
             what = "meet the end stop" if end == self.stop_angle else "are solid"
             raise ModelError(
@@ -123,7 +123,7 @@ class SpringFlywheel(ABC):
 
 
 @checked
-def characteristic(design: SpringFlywheel) -> Hinges:
+def spring_characteristic(design: SpringFlywheel) -> Hinges:
     """The frictionless static law between the flywheels: rows side by side, in each tabs and springs in series.
 
     φ(T) = p + s + 2T/k_t + Σ u(T) with the clearances p, s and the springs' compression u.  Where the first spring is
@@ -152,7 +152,7 @@ def detailed(design: SpringFlywheel) -> Absorber:
 
 
 @checked
-def condensed(design: SpringFlywheel) -> Absorber:
+def condensed_flywheel(design: SpringFlywheel) -> Absorber:
     """Two bodies with the frictionless characteristic between them, for linear and periodic analyses.
 
     What slides in the channels turns with the primary.  Its ``detail`` holds the parts that replace it in time.
@@ -162,7 +162,7 @@ def condensed(design: SpringFlywheel) -> Absorber:
     plain = dual_mass_flywheel(
         design.primary_inertia + sliding,
         design.secondary_inertia,
-        characteristic(design),
+        spring_characteristic(design),
         grease if design.damping is None else design.damping,
     )
     return plain.with_detail(detailed(design).components, kind=design.kind)

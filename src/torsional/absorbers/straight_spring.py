@@ -155,7 +155,7 @@ def straight_spring_flywheel(design: StraightSprings) -> Absorber:
 
     Nodes ``primary``, ``secondary`` and ``shoe_1_1`` … (channel, shoe); springs ``spring_1_1`` …, tabs
     ``shoe_1_primary_drive`` …, friction ``shoe_1_1_guide`` …, and ``dmf``, the end stop, whose angle is the travel.
-    For linear and periodic analyses: `condensed`.  After Wramner (Chalmers, 2020, §2.2.1 and Paper F).
+    For linear and periodic analyses: `condensed_flywheel`.  After Wramner (Chalmers, 2020, §2.2.1 and Paper F).
 
     >>> row = {"springs_per_row": 6, "shoe_mass": 0.384, "end_shoe_mass": 0.3, "shoe_width": 0.01}
     >>> row |= {"end_shoe_width": 0.01, "spring": CoilSpring(rate=1.05e6, free_length=0.03, solid_length=0.02)}

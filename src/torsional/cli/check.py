@@ -24,7 +24,7 @@ from torsional.model import Model
 from torsional.quantities import named_modes
 from torsional.solvers.equilibrium import OperatingPoint
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.system import System
 from torsional.units import show
 
@@ -52,7 +52,7 @@ def run(request: Request, gear: str, torque: str, expand: bool) -> None:
 
 def checked_model(model: Model, gear: str, torque: float) -> Document:
     """Everything that is told of a model in one gear under a mean torque [Nm]."""
-    system, point = operated(model, torque, gear)
+    system, point = at_operating_point(model, torque, gear)
     springs, elastic = list(standing(model, point)), list(first_modes(model, system, inputs.speed(model, "")))
     warnings = [*warnings_of(model), *doubts(elastic, torque, springs)]
     if not (system.connections.damping.any() or system.connections.loss_factor.any()):

@@ -16,7 +16,7 @@ from torsional.cli.tables import Column, Table
 from torsional.model import Model
 from torsional.quantities import named_modes, order_speed
 from torsional.solvers.modal import damped_modes, modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.units import show
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def run(
 
 def modes_of(model: Model, gear: str, torque: float, speed: float, order: float | None) -> xr.Dataset:
     """What `modal` finds, with names, the damped modes next to it, and the speed at which the order meets each mode."""
-    system, _ = operated(model, torque, gear)
+    system, _ = at_operating_point(model, torque, gear)
     found, damped = modal(system, speed), damped_modes(system, speed)
     partner = paired(found, damped)
     result = found.assign(

@@ -8,7 +8,7 @@ import xarray as xr
 
 from torsional.errors import ModelError, nearest
 from torsional.model import Model
-from torsional.quantities import acceleration, bound, irregularity, swing
+from torsional.quantities import acceleration, irregularity, order_sum, swing
 from torsional.system import assemble
 
 
@@ -49,10 +49,10 @@ def together(angle: xr.DataArray, torque: xr.DataArray) -> dict[str, xr.DataArra
     told: dict[str, xr.DataArray] = {}
     if angle.sizes["node"]:
         moved = acceleration(angle)
-        told |= {"acceleration_swing": swing(moved), "acceleration_bound": bound(moved)}
+        told |= {"acceleration_swing": swing(moved), "acceleration_bound": order_sum(moved)}
         told["irregularity"] = irregularity(angle)
     if torque.sizes["element"]:
-        told |= {"torque_swing": swing(torque), "torque_bound": bound(torque)}
+        told |= {"torque_swing": swing(torque), "torque_bound": order_sum(torque)}
     return told
 
 

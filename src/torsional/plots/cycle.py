@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from torsional.plots import style
-from torsional.quantities import bound, swing, waveform
+from torsional.quantities import order_sum, swing, waveform
 
 
 @style.styled
@@ -23,7 +23,7 @@ def plot_cycle(
     """
     figure, drawn = style.on(axes, (7.0, 3.6))
     quantity = str(orders.attrs["quantity"])
-    signal, most = waveform(orders), float(style.shown(bound(orders), quantity))
+    signal, most = waveform(orders), float(style.shown(order_sum(orders), quantity))
     degrees = style.shown(np.asarray(signal.crank_angle), "crank_angle")
     for number, order in enumerate(shown):
         part = style.shown(waveform(orders.sel(order=[order])), quantity)

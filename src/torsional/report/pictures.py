@@ -9,7 +9,7 @@ from torsional import plots
 from torsional.report.analysis import Variant
 from torsional.report.blocks import Picture, picture
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 
 
 def in_gear(gear: str) -> str:
@@ -49,7 +49,7 @@ def shape_picture(variant: Variant, gear: str) -> Picture:
 
 def _shaped(variant: Variant, gear: str) -> xr.Dataset:
     """The modes with their shapes, linearised as the interference diagram is."""
-    system, _ = operated(variant.model, float(variant.interference.attrs["mean_torque"]), gear)
+    system, _ = at_operating_point(variant.model, float(variant.interference.attrs["mean_torque"]), gear)
     modes = modal(system, float(variant.modes(gear).speed))
     return modes.assign_attrs(drawn=min(5, int((modes.frequency > 0).sum())))
 

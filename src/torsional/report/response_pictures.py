@@ -11,7 +11,7 @@ from torsional import plots
 from torsional.engine.orders import HALF_ORDERS
 from torsional.plots import style
 from torsional.plots.maps import colour_limits
-from torsional.quantities import bound, swing
+from torsional.quantities import order_sum, swing
 from torsional.report.analysis import Comparison, Response, Variant
 from torsional.report.blocks import Picture, picture
 from torsional.report.labels import rounded, told
@@ -161,7 +161,7 @@ def cycle_pictures(comparison: Comparison) -> list[Picture]:
         assert variant.main_order is not None
         place = f"{told(at['speed'], 'speed')}, {told(at['mean_torque'], 'torque')}{in_gear(str(at['gear']))}"
         figure = plots.plot_cycle(orders, shown=[variant.main_order], title=f"{variant.label}, {place}")
-        half, most = float(swing(orders)), float(bound(orders))
+        half, most = float(swing(orders)), float(order_sum(orders))
         caption = f"{variant.label} at its loudest point within full load ({place}): half the peak-to-peak is "
         caption += (
             f"{told(half, 'acceleration')}, {rounded(100 * half / most)} % of the sum of the orders' amplitudes, which "

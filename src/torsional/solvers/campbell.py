@@ -15,7 +15,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.results import dataset, of_model
 from torsional.solvers.modal import modal, natural_frequencies
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.system import System
 
 
@@ -46,7 +46,7 @@ def campbell(
     names = model.chosen_gears(gears)
     at = _speeds(model) if speeds is None else np.atleast_1d(np.asarray(speeds, dtype=float))
     n = np.asarray(model.engine_orders() if orders is None else orders, dtype=float)
-    lines = [_line(operated(model, mean, gear)[0], at, n) for gear in names]
+    lines = [_line(at_operating_point(model, mean, gear)[0], at, n) for gear in names]
     elements = list(dict.fromkeys(element for line in lines for element in line.elements))
     count = max(line.frequency.shape[1] for line in lines)
     found = dataset(

@@ -35,7 +35,7 @@ def mean_state(model: Model, system: System, torque: ArrayLike) -> OperatingPoin
 
 
 @checked
-def operated(model: Model, torque: float, gear: str | int | None = None) -> tuple[System, OperatingPoint]:
+def at_operating_point(model: Model, torque: float, gear: str | int | None = None) -> tuple[System, OperatingPoint]:
     """The linear system about the mean engine ``torque`` [Nm] in one ``gear``, and that operating point.
 
     A model without any law needs no landmarks: its system is linear as it is.

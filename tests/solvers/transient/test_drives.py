@@ -13,7 +13,7 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.harmonic import harmonic_response
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.solvers.transient.acting import Acting, assembled
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.drives import Governor, OrderTorques, TorqueHistory, all_acting, held
@@ -161,7 +161,7 @@ def test_levels_with_falling_times_are_refused() -> None:
 
 def test_a_vibrating_start_is_the_linear_response(truck: Model) -> None:
     assert truck.engine is not None
-    linear, _ = operated(truck, TORQUE)
+    linear, _ = at_operating_point(truck, TORQUE)
     given = truck.engine.excitation(truck.landmarks.throws, [SPEED], [TORQUE], np.arange(0, 12.5, 0.5))
     problem = Problem.of(assemble(truck.powertrain()), given, SPEED, hold="vehicle")
     state = starting("vibrating", problem.system, problem.acting, "vehicle", SPEED)

@@ -11,7 +11,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, LuGre
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import Governor, State, TorqueHistory, transient
+from torsional.solvers.transient import Governor, MotionState, TorqueHistory, transient
 from torsional.system import assemble
 
 DISC = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 100.0)}))
@@ -22,7 +22,7 @@ def between_stops(step: float, **settings: object) -> xr.Dataset:
     """A small mass thrown at elastic stops of 1e8 Nm/rad."""
     law = Contacts.between(-0.01, 0.01, 1e8, 0.0)
     line = assemble(Powertrain({"mass": Inertia(0.003), "stops": Coupling("ground", "mass", law)}))
-    start = State.at_rest(line).moved(0.0, [1.0])
+    start = MotionState.at_rest(line).moved(0.0, [1.0])
     return transient(line, (), 0.02, start, speed=0.0, step=step, **settings)  # type: ignore[arg-type]
 
 
@@ -53,7 +53,7 @@ def loose(large: float, beside: float) -> xr.Dataset:
     parts = {"large": Inertia(large), "base": Shaft("ground", "large", 1e4 * large), "small": Inertia(0.003)}
     parts |= {"stops": stops, "held": Shaft("large", "small", beside)}
     line = assemble(Powertrain(parts))
-    return transient(line, (), 0.5, State.at_rest(line).moved(0.0, np.array([2.0, 2.0])), speed=0.0)
+    return transient(line, (), 0.5, MotionState.at_rest(line).moved(0.0, np.array([2.0, 2.0])), speed=0.0)
 
 
 @pytest.mark.parametrize(("beside", "told"), [(1.0, True), (1e4, False)])
@@ -95,7 +95,7 @@ def test_settings_without_meaning_are_refused(wrong: dict[str, float]) -> None:
 def test_runs_end_where_they_should_and_never_beyond_numbers() -> None:
     assert transient(DISC, PUSH, 0.010004, "rest").attrs["end_time"] == pytest.approx(0.010004, rel=1e-12)
     with pytest.raises(ModelError, match="beyond all numbers"):
-        transient(DISC, PUSH, 0.01, State.at_rest(DISC).moved(0.0, [1e160]))
+        transient(DISC, PUSH, 0.01, MotionState.at_rest(DISC).moved(0.0, [1e160]))
 
 
 def test_a_spring_to_the_ground_takes_the_mean_torque_whatever_node_is_held() -> None:
@@ -112,7 +112,7 @@ def test_a_small_mass_that_is_pumped_up_beside_a_large_one_is_told(step: float, 
     stops = Hinges(0.0, (0.01, -0.01), (1.0, -1.0), (stiffness, stiffness))
     small = {"small": Inertia(0.003), "stops": Coupling("ground", "small", stops)}
     line = assemble(Powertrain(small | {"large": Inertia(1000.0), "spring": Shaft("ground", "large", 1e5)}, 2))
-    start = State.at_rest(line).moved(0.0, np.array([1.0, 100.0]))
+    start = MotionState.at_rest(line).moved(0.0, np.array([1.0, 100.0]))
     data = transient(line, (), 2.0, start, speed=0.0, step=step, method="newmark", output=0.1)
     assert abs(data.attrs["method_share"]) < 1e-4
     assert ("stops" in data.attrs.get("energy_error", "")) is told
@@ -123,7 +123,7 @@ def test_bristles_that_bend_within_a_step_take_no_energy_at_the_start(stiffness:
     law = LuGre(stiffness, stiffness**0.5, 1.0, breakaway_torque=1.5, stribeck_rate=0.001)
     parts = {"mass": Inertia(1.0), "spring": Shaft("ground", "mass", 100.0), "rub": Coupling("ground", "mass", law)}
     line = assemble(Powertrain(parts))
-    start = State.at_rest(line).moved(0.0, [1.0])
+    start = MotionState.at_rest(line).moved(0.0, [1.0])
     ends = [transient(line, (), 0.5, start, speed=0.0, step=h).energy.values[-1, :2].sum() for h in (1e-3, 1e-5)]
     assert ends[0] == pytest.approx(ends[1], rel=5e-3)
 

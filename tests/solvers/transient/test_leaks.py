@@ -14,7 +14,7 @@ from torsional.components import Inertia
 from torsional.engine import ChenFlynn, CombustionCycle, CrankLayout, Engine, LoadTable
 from torsional.errors import ModelError
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import CylinderTorques, State, TorqueHistory, transient
+from torsional.solvers.transient import CylinderTorques, MotionState, TorqueHistory, transient
 from torsional.system import assemble
 
 LEAKAGE, INERTIA, INTAKE, CRANKCASE = 0.1, 2.0, 1.05e5, 1.0e5
@@ -44,7 +44,7 @@ def pushed(engine: Engine, torque: float = WEIGHT) -> list[CylinderTorques | Tor
 
 def moved(engine: Engine, angle: float, time: float, **settings: object) -> xr.Dataset:
     """The crank let go at an angle [rad], its frame at rest."""
-    start = State(0.0, np.array([angle]), np.zeros(1), np.zeros(len(LINE.connections.names)), np.zeros(0))
+    start = MotionState(0.0, np.array([angle]), np.zeros(1), np.zeros(len(LINE.connections.names)), np.zeros(0))
     told: dict[str, object] = {"step": 2e-5, "output": 1e-3} | settings
     return transient(LINE, pushed(engine), time, start, speed=0.0, **told)  # type: ignore[arg-type]
 
@@ -115,7 +115,7 @@ def test_valves_that_open_fill_the_cylinder() -> None:
     """Turned through a standstill: the charge is lost, and whole again after the next intake stroke."""
     run = moved(ONE, np.radians(-100.0), 0.3)
     assert float(run.end_charge[0]) < -0.3
-    turned = State.ending(run, LINE).moved(0.0, 60.0)
+    turned = MotionState.ending(run, LINE).moved(0.0, 60.0)
     gone = transient(LINE, pushed(ONE, 0.0), 0.5, turned, speed=0.0)
     assert float(gone.angle[-1, 0]) > 4 * np.pi and float(gone.end_charge[0]) == 0.0
 

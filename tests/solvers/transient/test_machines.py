@@ -18,7 +18,7 @@ from torsional.powertrain import Powertrain
 from torsional.solvers.transient import (
     CylinderTorques,
     Governor,
-    State,
+    MotionState,
     TorqueHistory,
     engine_drive,
     steady_map,
@@ -103,7 +103,7 @@ def test_implicit_and_explicit_steps_agree(friction: bool) -> None:
     parts = {"a": Inertia(1.8), "b": Inertia(1.2), "s": Coupling("b", "a", Contacts.lash(0.004, 2e4, 1e-3))}
     system = assemble(Powertrain(parts | ({"w": Coupling("b", "a", washer)} if friction else {})))
     drive = Excitation(("a",), [0.0, 1.0], 60.0, [[40.0, 120.0]])
-    start = State.at_rest(system).moved(np.array([0.01, 0.0]), np.array([0.5, 0.0]))
+    start = MotionState.at_rest(system).moved(np.array([0.01, 0.0]), np.array([0.5, 0.0]))
     implicit, explicit = (
         transient(system, drive, 0.2, start, hold="b", output=1e-3, **given)  # type: ignore[arg-type]
         for given in ({"step": 1e-5, "spectral_radius": 1.0}, {"step": 1e-3, "method": "explicit", "tolerance": 1e-9})
@@ -134,12 +134,12 @@ def test_friction_goes_on_from_what_it_remembers() -> None:
     assert unbalanced(whole) < 1e-10 * float(whole.energy.sel(share="friction")[-1])
 
 
-def stops(stiffness: float = 1e8) -> tuple[System, State]:
+def stops(stiffness: float = 1e8) -> tuple[System, MotionState]:
     """A small mass that flies between two elastic stops, a curve: those that are hinges are guarded."""
     most = 0.01 * stiffness
     law: Law = Table(((-0.02, -most), (-0.01, 0.0), (0.0, 0.0), (0.01, 0.0), (0.02, most)))
     system = assemble(Powertrain({"m": Inertia(0.003), "stops": Coupling("ground", "m", law)}))
-    return system, State.at_rest(system).moved(0.0, np.array([1.0]))
+    return system, MotionState.at_rest(system).moved(0.0, np.array([1.0]))
 
 
 def test_a_step_that_makes_energy_is_halved_and_told() -> None:

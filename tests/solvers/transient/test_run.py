@@ -18,8 +18,8 @@ from torsional.laws import Contacts, Hinges, Jenkins, LuGre
 from torsional.powertrain import Powertrain
 from torsional.results import load_results, save_results
 from torsional.solvers.harmonic import harmonic_response
-from torsional.solvers.operating import operated
-from torsional.solvers.transient import Governor, OrderTorques, SpeedProfile, State, TorqueHistory, transient
+from torsional.solvers.operating import at_operating_point
+from torsional.solvers.transient import Governor, MotionState, OrderTorques, SpeedProfile, TorqueHistory, transient
 from torsional.solvers.transient.marching import LEDGER
 from torsional.stamps import SpeedSwitch
 from torsional.system import System, assemble
@@ -41,8 +41,8 @@ def thirds(mean: float = 0.0) -> Excitation:
     return Excitation(("a",), [0.0, 3.0], SPEED, [[mean, 100.0 + 40.0j]])
 
 
-def state(system: System, angle: float, speed: float) -> State:
-    still = State.at_rest(system)
+def state(system: System, angle: float, speed: float) -> MotionState:
+    still = MotionState.at_rest(system)
     return still.moved(np.array([angle]), np.array([speed]))
 
 
@@ -73,7 +73,7 @@ def test_a_contact_throws_the_mass_back() -> None:
     """m = 1, k = 100, gap 0.1, v = 1: in contact for π/10 s, leaves with v = −1."""
     law = Hinges(0.0, (0.1,), (1.0,), (100.0,))
     stop = assemble(Powertrain({"m": Inertia(1.0), "c": Coupling("ground", "m", law)}))
-    still = State.at_rest(stop).moved(0.0, np.array([1.0]))
+    still = MotionState.at_rest(stop).moved(0.0, np.array([1.0]))
     found = transient(stop, (), 0.6, still, speed=0.0, step=1e-4, spectral_radius=1.0)
     touching = float((found.torque.values[:, 0] > 0).sum()) * 1e-4
     assert touching == pytest.approx(np.pi / 10, abs=2e-4)
@@ -101,7 +101,7 @@ def test_a_run_from_the_linear_response_stays_on_it() -> None:
 def test_a_linear_truck_keeps_to_its_response() -> None:
     model = load_model("examples/truck_dmf_two_stage.yaml")
     assert model.engine is not None
-    linear, _ = operated(model, 1500.0)
+    linear, _ = at_operating_point(model, 1500.0)
     given = model.engine.excitation(model.landmarks.throws, [SPEED], [1500.0], np.arange(0.5, 9.5, 0.5))
     response = harmonic_response(linear, given).isel(speed=0)
 
@@ -178,7 +178,7 @@ def test_from_a_run_by_another_method_or_under_other_torques_it_begins_afresh(ot
     first = transient(system, time=0.05, **given)
     second = transient(system, time=0.05, start=first, **given | other)
     assert float(second.energy.sel(share="sources")[0]) == 0.0 != float(first.energy.sel(share="sources")[-1])
-    plain = State.ending(first, system)
+    plain = MotionState.ending(first, system)
     np.testing.assert_array_equal(second.angle, transient(system, time=0.05, start=plain, **given | other).angle)
 
 

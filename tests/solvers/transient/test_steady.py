@@ -12,7 +12,7 @@ from torsional.files import load_model
 from torsional.laws import Hinges, Law, Polynomial
 from torsional.model import RPM
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient import TorqueHistory, engine_drive, steady_state, swept
+from torsional.solvers.transient import TorqueHistory, engine_drive, steady_state, steady_sweep
 from torsional.system import System, assemble
 
 FINE = {"step": 0.005, "spectral_radius": 1.0}
@@ -48,7 +48,7 @@ def test_two_stage_oscillator(
 def test_two_motions_of_a_duffing_oscillator_beside_each_other() -> None:
     duffing = oscillator(Polynomial((1.0, 0.0, 0.1)), 0.05)
     given = Excitation(("disc",), [1], 1.0, [[0.18]])
-    found = swept(duffing, given, [1.05, 1.1, 1.15, 1.2, 1.25, 1.3], step=0.03, tolerance=1e-4, highest_order=7)
+    found = steady_sweep(duffing, given, [1.05, 1.1, 1.15, 1.2, 1.25, 1.3], step=0.03, tolerance=1e-4, highest_order=7)
     up, down = abs(found.twist.sel(element="spring", order=1.0)).values
     # folds at 1.11570025 and 1.26960196 rad/s (NLvib example 01)
     assert (np.abs(up - down) > 0.5).tolist() == [False, False, True, True, True, False]

@@ -7,17 +7,17 @@ from torsional.solvers.transient.events import stage_changes
 from torsional.solvers.transient.orders import crank_angle_of, orders_in_time, windowed_rms
 from torsional.solvers.transient.run import transient
 from torsional.solvers.transient.speed_profile import SpeedProfile
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 from torsional.solvers.transient.steady import steady_state
-from torsional.solvers.transient.sweeps import engine_drive, steady_map, swept
+from torsional.solvers.transient.sweeps import engine_drive, steady_map, steady_sweep
 
 __all__ = [
     "Certificate",
     "CylinderTorques",
     "Governor",
+    "MotionState",
     "OrderTorques",
     "SpeedProfile",
-    "State",
     "TorqueHistory",
     "certified",
     "crank_angle_of",
@@ -26,7 +26,7 @@ __all__ = [
     "stage_changes",
     "steady_map",
     "steady_state",
-    "swept",
+    "steady_sweep",
     "transient",
     "windowed_rms",
 ]

@@ -24,11 +24,11 @@ def stage_changes(system: System, run: xr.Dataset) -> xr.Dataset:
     >>> from torsional.components import Coupling, Inertia
     >>> from torsional.laws import Contacts
     >>> from torsional.powertrain import Powertrain
-    >>> from torsional.solvers.transient import State, transient
+    >>> from torsional.solvers.transient import MotionState, transient
     >>> from torsional.system import assemble
     >>> stop = Coupling("ground", "disc", Contacts((0.1,), (1.0,), (100.0,), (0.0,)))
     >>> line = assemble(Powertrain({"disc": Inertia(1.0), "stop": stop}))
-    >>> run = transient(line, (), 0.6, State.at_rest(line).moved(0.0, [1.0]), speed=0.0)
+    >>> run = transient(line, (), 0.6, MotionState.at_rest(line).moved(0.0, [1.0]), speed=0.0)
     >>> stage_changes(line, run).time.values.round(4).tolist()  # closed for π/10 s
     [0.1, 0.4142]
     """

@@ -14,7 +14,7 @@ from torsional.numerics.exact_contacts import ExactContacts
 from torsional.solvers.transient.acting import Source
 from torsional.solvers.transient.linear_parts import parts_of
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 
 WHAT = "the exact method"
 SMALL, MOST = 1e-13, 400
@@ -31,7 +31,7 @@ class Motion(NamedTuple):
     events: int
 
 
-def exact_motion(problem: Problem, state: State, times: Array) -> Motion:
+def exact_motion(problem: Problem, state: MotionState, times: Array) -> Motion:
     """The motion at rising times [s] from a state; raises ModelError that names what it does not know."""
     parts, speed = parts_of(problem, WHAT), _speed(problem)
     loads, base = _loads(problem, speed)

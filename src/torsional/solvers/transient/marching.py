@@ -16,7 +16,7 @@ from torsional.numerics.stepping import Count, Entry, Settings, Status, begin, m
 from torsional.numerics.stepping_state import State as Standing
 from torsional.solvers.transient.exactly import exact_motion
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 
 METHODS = ("chung_hulbert", "hht", "bossak", "newmark", "explicit", "exact")
 LEDGER = ("kinetic", "strain", "sources", "dampers", "contacts", "friction", "method")
@@ -84,13 +84,13 @@ class Marched(NamedTuple):
     load: Array
     lost: Array
     energy: Array
-    end: State
+    end: MotionState
     steps: int
     iterations: int
     status: str
 
 
-def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, every: int = 1) -> Marched:
+def marched(problem: Problem, state: MotionState, steps: int, accuracy: Accuracy, every: int = 1) -> Marched:
     """Go on from a state for ``steps`` steps and keep ``every`` one of them, the first and the last included."""
     kept = np.unique(np.append(np.arange(0, steps, every), steps))
     if accuracy.method == "explicit":
@@ -103,7 +103,7 @@ def marched(problem: Problem, state: State, steps: int, accuracy: Accuracy, ever
     memory, load, lost = np.zeros((3, len(kept), count))
     for whole, own_part in ((memory, records.memory), (load, records.load), (lost, records.lost)):
         whole[:, plan.laws.of] = own_part
-    end = State(
+    end = MotionState(
         time=float(records.time[-1]),
         angle=records.q[-1],
         speed=records.v[-1],
@@ -142,7 +142,7 @@ def method_share(told: Marched) -> float:
     return float(standing.ledger[Entry.MADE]) / through if through > 0 else 0.0
 
 
-def _standing(problem: Problem, state: State, step: float) -> Standing:
+def _standing(problem: Problem, state: MotionState, step: float) -> Standing:
     """The state as the compiled march wants it; one that a march has left goes on to the last bit."""
     if state.standing is None:
         return begin(
@@ -162,7 +162,7 @@ def _standing(problem: Problem, state: State, step: float) -> Standing:
     return state.standing._replace(counts=counts, begin=np.array([state.time]))
 
 
-def _remembered(problem: Problem, state: State) -> Array:
+def _remembered(problem: Problem, state: MotionState) -> Array:
     """Integrals of the governors, and charges of the cylinders less one behind them; full ones where other cylinders
     or none were there before."""
     governors, leaks = len(problem.acting.governors), len(problem.acting.leaks)
@@ -171,7 +171,7 @@ def _remembered(problem: Problem, state: State) -> Array:
     return np.append(state.integral if state.integral.size else np.zeros(governors), charge)
 
 
-def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) -> Marched:
+def _explicit(problem: Problem, state: MotionState, times: Array, accuracy: Accuracy) -> Marched:
     """The same by the explicit integrator, which keeps no ledger."""
     run = explicit_march(
         problem.equations,
@@ -187,7 +187,7 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
     torque, load = np.zeros((2, *run.memories.shape))
     connected, outside = problem.equations.connected, problem.plan.outside
     element_torques(connected, outside, times, run.angles, run.rates, run.memories, run.references, torque, load)
-    end = State(
+    end = MotionState(
         time=float(times[-1]),
         angle=run.angles[-1],
         speed=run.rates[-1],
@@ -213,11 +213,11 @@ def _explicit(problem: Problem, state: State, times: Array, accuracy: Accuracy) 
     )
 
 
-def _exact(problem: Problem, state: State, times: Array) -> Marched:
+def _exact(problem: Problem, state: MotionState, times: Array) -> Marched:
     """The same from event to event, to rounding, without a ledger."""
     run = exact_motion(problem, state, times)
     none, speed = np.zeros_like(run.torque), problem.start_speed
-    end = State(float(times[-1]), run.angles[-1], run.rates[-1], none[-1], np.zeros(0), speed)
+    end = MotionState(float(times[-1]), run.angles[-1], run.rates[-1], none[-1], np.zeros(0), speed)
     unbooked = np.full((len(times), len(LEDGER)), np.nan)
     motion = (run.angles, run.rates, run.accelerations, run.torque)
     return Marched(times, *motion, none, none, none, unbooked, end, run.events, 0, COMPLETE)

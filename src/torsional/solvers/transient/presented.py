@@ -13,7 +13,7 @@ from torsional.numerics.arrays import Array, IntArray
 from torsional.results import Variable, dataset
 from torsional.solvers.transient.marching import LEDGER, Marched, method_share
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 
 Coordinates = dict[str, tuple[object, str] | tuple[object, str, str]]
 
@@ -95,7 +95,7 @@ def _rubs(law: Law | None) -> bool:
     return law is not None and (law.remembers or not law.carries_mean_torque)
 
 
-def ending(end: State) -> dict[str, Variable]:
+def ending(end: MotionState) -> dict[str, Variable]:
     """The last state, from which another run can go on."""
     charge = {} if end.charge is None or not len(end.charge) else {"end_charge": (("charge",), end.charge, "")}
     return {

@@ -14,12 +14,12 @@ from torsional.numerics.stepping import begin
 from torsional.numerics.stepping_state import State as Standing
 from torsional.solvers.transient.marching import Accuracy
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 
 ROW, STEP, MARK = "end_standing", "end_step", "end_of"
 
 
-def resumable(run: xr.Dataset, problem: Problem, end: State, accuracy: Accuracy) -> xr.Dataset:
+def resumable(run: xr.Dataset, problem: Problem, end: MotionState, accuracy: Accuracy) -> xr.Dataset:
     """The ``run`` with the accelerations, open and closed contacts, torques and the ledger of its last moment."""
     if end.standing is None:
         return run
@@ -27,7 +27,7 @@ def resumable(run: xr.Dataset, problem: Problem, end: State, accuracy: Accuracy)
     return run.assign({ROW: ("standing", row)}).assign_attrs({STEP: end.step, MARK: mark(problem, accuracy)})
 
 
-def resumed(start: object, state: State, problem: Problem, accuracy: Accuracy) -> State:
+def resumed(start: object, state: MotionState, problem: Problem, accuracy: Accuracy) -> MotionState:
     """The ``state`` with all that, where ``start`` is a run of the same equations by the same method; else as it is:
     accelerations that other torques have left are none to go on with."""
     if not isinstance(start, xr.Dataset) or ROW not in start or start.attrs.get(MARK) != mark(problem, accuracy):

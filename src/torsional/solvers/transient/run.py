@@ -21,7 +21,7 @@ from torsional.solvers.transient.presented import joined, kept, presented
 from torsional.solvers.transient.problem import Drives, Levels, Problem
 from torsional.solvers.transient.resuming import resumable, resumed
 from torsional.solvers.transient.speed_profile import SpeedProfile
-from torsional.solvers.transient.starts import State, starting
+from torsional.solvers.transient.starts import MotionState, starting
 from torsional.system import System
 
 Progress = Callable[[float, float, float], None]
@@ -61,7 +61,7 @@ def transient(
 
     ``drives``: an `Excitation` (its orders keep to the mean rotation) or any of `OrderTorques`, `CylinderTorques`,
     `TorqueHistory`, `Governor`, or several.  ``start``: "equilibrium" under the mean torques (default), "vibrating"
-    (the linear response), "rest", a `State`, the result of another run, or one motion of `harmonic_response` or
+    (the linear response), "rest", a `MotionState`, the result of another run, or one motion of `harmonic_response` or
     `periodic_response`; from a result with the same drives and settings it goes on to the last bit, its ledger too.
     ``speed`` [rad/s]: the mean speed or a `SpeedProfile`, default that of the excitation.  ``hold``: the node that
     takes up the mean torque where no spring to the ground does.  ``levels`` {name: (times, values)} that normal loads
@@ -129,7 +129,7 @@ class Run:
     progress: Progress | None = None
     notes: dict[str, str] = field(default_factory=dict)
 
-    def at(self, state: State, time: float, times: Array) -> Marched:
+    def at(self, state: MotionState, time: float, times: Array) -> Marched:
         """A run over a ``time`` [s] of which the moments ``times`` [s] from its start on are kept."""
         whole, edges = self.accuracy, np.unique(np.concatenate([[0.0], times, [time]]))
         parts: list[Marched] = []
@@ -142,7 +142,7 @@ class Run:
         self.accuracy = whole
         return _picked(_together(parts, parts[-1].status), state.time + times)
 
-    def over(self, state: State, time: float, output: float = 0.0) -> Marched:
+    def over(self, state: MotionState, time: float, output: float = 0.0) -> Marched:
         """Everything from a state on over a ``time`` [s], kept at intervals of ``output`` [s]."""
         total = max(round(time / self.accuracy.step), 1)
         every = max(round(output / self.accuracy.step), 1) if output else 1 + total // MOST_SAMPLES
@@ -161,7 +161,7 @@ class Run:
             status = f"interrupted at {parts[-1].end.time:.6g} s"
         return _together(parts, status)
 
-    def _piece(self, state: State, steps: int, every: int, total: int) -> Marched:
+    def _piece(self, state: MotionState, steps: int, every: int, total: int) -> Marched:
         """One piece, with halved steps where the method's own production asks for it."""
         refine = self._refinement
         for _ in range(HALVINGS):

@@ -18,14 +18,14 @@ from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
 from torsional.solvers.transient.profiles import Profile, through
 from torsional.system import System
 
-STARTS = "rest, equilibrium, vibrating, a State, a result of transient, of harmonic_response or of periodic_response"
+STARTS = "rest, equilibrium, vibrating, a MotionState, a result of transient, harmonic_response or periodic_response"
 UNBALANCED = 1e-9
 ENDING = ("angle", "speed", "memory", "integral")
 SMALL, HARMONICS, SAMPLES = 1e-6, 40, 720
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class MotionState:
     """A moment of a line: ``time`` [s], ``angle`` [rad] and ``speed`` [rad/s] of the coordinates as deviations,
     ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero), ``reference``
     rotation that dampers count from [rad/s] (None: the reference node's), ``charge`` of the cylinders less one (None:
@@ -42,22 +42,22 @@ class State:
     charge: Array | None = None
 
     @classmethod
-    def at_rest(cls, system: System, time: float = 0.0) -> State:
+    def at_rest(cls, system: System, time: float = 0.0) -> MotionState:
         """No deviation and nothing remembered."""
         still = np.zeros(len(system.coordinates))
         return cls(time, still, still.copy(), np.zeros(len(system.connections.names)), np.zeros(0))
 
-    def since(self, time: float) -> State:
+    def since(self, time: float) -> MotionState:
         """The same at another time [s]."""
         return replace(self, time=time, standing=None, step=0.0)
 
-    def moved(self, angle: Array | float, speed: Array | float, memory: Array | float = 0.0) -> State:
+    def moved(self, angle: Array | float, speed: Array | float, memory: Array | float = 0.0) -> MotionState:
         """The state a little off, at the same time."""
         moved = (self.angle + angle, self.speed + speed, self.memory + memory)
-        return State(self.time, *moved, self.integral, self.reference, charge=self.charge)
+        return MotionState(self.time, *moved, self.integral, self.reference, charge=self.charge)
 
     @classmethod
-    def ending(cls, run: xr.Dataset, system: System) -> State:
+    def ending(cls, run: xr.Dataset, system: System) -> MotionState:
         """The last moment of a run, of a steady motion its crank angle zero; ModelError for one of another line."""
         if run.sizes["coordinate"] != len(system.coordinates) or run.end_angle.ndim > 1:
             remedy = "choose one run of several, of the same line"
@@ -70,13 +70,13 @@ class State:
         return cls(time, angle, speed, memory, integral, reference, charge=charge)
 
 
-def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
+def starting(start: object, system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """The state that ``start`` means; raises ModelError for what means none."""
     count = len(system.connections.names)
-    if isinstance(start, State):
+    if isinstance(start, MotionState):
         state = start
     elif isinstance(start, xr.Dataset) and "end_angle" in start:
-        state = State.ending(start, system)
+        state = MotionState.ending(start, system)
     else:
         state = _found(start, system, acting, hold, speed)
         state = replace(state, memory=state.memory[: count - len(acting.drags)])
@@ -86,7 +86,7 @@ def starting(start: object, system: System, acting: Acting, hold: str, speed: fl
     return replace(state, memory=np.append(state.memory, more)[:count], standing=None)
 
 
-def _found(start: object, system: System, acting: Acting, hold: str, speed: float) -> State:
+def _found(start: object, system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """The state that a word or a motion means."""
     if isinstance(start, xr.Dataset):
         return periodic_state(start, system, acting, hold)
@@ -95,20 +95,20 @@ def _found(start: object, system: System, acting: Acting, hold: str, speed: floa
     if start == "vibrating":
         return vibrating(system, acting, hold, speed)
     if start == "rest":
-        return State.at_rest(system)
+        return MotionState.at_rest(system)
     raise ModelError("no start", where="start", found=repr(start)[:60], allowed=STARTS)
 
 
-def equilibrated(system: System, acting: Acting, hold: str, speed: float) -> State:
+def equilibrated(system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """Every spring twisted by the mean torques of the time zero, all nodes at one speed.
 
     A free line gets the rigid speed at which its drives let it go without drifting.
     """
     moving = vibrating(system, acting, hold, speed)
     v = np.full(len(system.coordinates), float((system.M @ moving.speed).sum() / system.M.sum()))
-    still = State.at_rest(system)
+    still = MotionState.at_rest(system)
     angle = mean_angles(system, acting, hold)
-    return State(0.0, angle, still.speed if grounded(system) else v, still.memory, still.integral)
+    return MotionState(0.0, angle, still.speed if grounded(system) else v, still.memory, still.integral)
 
 
 def mean_angles(system: System, acting: Acting, hold: str) -> Array:
@@ -120,12 +120,12 @@ def mean_angles(system: System, acting: Acting, hold: str) -> Array:
     return angles_of(system, _balanced_twists(system, load, hold, abs(size)), hold)
 
 
-def vibrating(system: System, acting: Acting, hold: str, speed: float) -> State:
+def vibrating(system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """The steady response to the drives at the crank angle zero, each law a spring and a damper of its own slopes in
     equilibrium: close to where a steady run ends."""
-    angle, still = mean_angles(system, acting, hold), State.at_rest(system)
+    angle, still = mean_angles(system, acting, hold), MotionState.at_rest(system)
     if speed <= 0:
-        return State(0.0, angle, still.speed, still.memory, still.integral)
+        return MotionState(0.0, angle, still.speed, still.memory, still.integral)
     k, d = tangents(system, angle, speed)
     rows = system.connections.weights
     stiffness, damping = (rows.T * k) @ rows, (rows.T * d) @ rows
@@ -134,7 +134,7 @@ def vibrating(system: System, acting: Acting, hold: str, speed: float) -> State:
         w = order * speed
         q = np.linalg.solve(stiffness + 1j * w * damping - w * w * system.M, torque)
         moved, rate = moved + q.real, rate + (1j * w * q).real
-    return State(0.0, angle + moved, rate, still.memory, still.integral)
+    return MotionState(0.0, angle + moved, rate, still.memory, still.integral)
 
 
 def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, ComplexArray]:
@@ -234,7 +234,7 @@ def grounded(system: System) -> bool:
     return bool(np.abs(system.connections.weights[_carrying(system)].sum(axis=1)).max(initial=0.0) > 1e-9)
 
 
-def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str) -> State:
+def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str) -> MotionState:
     """The state at crank angle zero of one motion: orders of node angles at one speed, or one point of a branch.
 
     Without order 0 the mean is the equilibrium.  Raises ModelError where several motions are left to choose from.
@@ -254,7 +254,7 @@ def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str)
     scale = system.T[places, np.arange(len(places))]
     at = [list(data.node.values).index(node) for node in system.coordinates]
     q, v = (((values[:, at] / scale).sum(axis=0)).real for values in (angle, rate[:, None] * angle))
-    state = State.at_rest(system)
+    state = MotionState.at_rest(system)
     if 0.0 not in order:
         q = q + mean_angles(system, acting, hold)
-    return State(0.0, np.asarray(q), np.asarray(v), state.memory, state.integral)
+    return MotionState(0.0, np.asarray(q), np.asarray(v), state.memory, state.integral)

@@ -11,7 +11,7 @@ from torsional.numerics.arrays import Array
 from torsional.solvers.transient.character import Character, dimension, drifts, named, repeats, restless
 from torsional.solvers.transient.marching import Accuracy, Marched, marched
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State, grounded, tangents
+from torsional.solvers.transient.starts import MotionState, grounded, tangents
 from torsional.system import System
 
 BLOCK = 32
@@ -37,7 +37,7 @@ class Stroboscope:
 
     problem: Problem
     accuracy: Accuracy
-    state: State
+    state: MotionState
     base_order: float
     points: Array = field(init=False)
     size: float = field(init=False, default=0.0)

@@ -27,7 +27,7 @@ PARTS = 2
 
 
 @checked
-def swept(
+def steady_sweep(
     system: System,
     drives: Excitation | Callable[[float], Drives],
     values: ArrayLike,
@@ -48,7 +48,7 @@ def swept(
     >>> law = Polynomial((1.0, 0.0, 0.1))
     >>> duffing = assemble(Powertrain({"disc": Inertia(1.0), "spring": Coupling("ground", "disc", law, damping=0.05)}))
     >>> drive = Excitation(("disc",), [1], 1.0, [[0.18]])
-    >>> found = swept(duffing, drive, [1.0, 1.1, 1.2, 1.3], step=0.05, tolerance=1e-4)
+    >>> found = steady_sweep(duffing, drive, [1.0, 1.1, 1.2, 1.3], step=0.05, tolerance=1e-4)
     >>> abs(found.twist.sel(order=1, element="spring")).values[:, 2].round(1).tolist()  # bent over: it is late to fall
     [2.5, 0.4]
     """
@@ -160,4 +160,4 @@ def _along(
     def drive(speed: float) -> Excitation:
         return engine_drive(model, speed, torque, highest_order, base_order)
 
-    return swept(system, drive, speeds, directions=("up",), hold=hold, **settings).isel(direction=0, drop=True)
+    return steady_sweep(system, drive, speeds, directions=("up",), hold=hold, **settings).isel(direction=0, drop=True)

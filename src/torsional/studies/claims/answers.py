@@ -20,7 +20,7 @@ from torsional.quantities import acceleration
 from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import modal
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims.trucks import reached
 from torsional.units import RPM
 
@@ -61,7 +61,7 @@ def responded(
     ``orders``: the firing order alone unless given.
     """
     means = np.broadcast_to(mean_torque(model) if torque is None else np.asarray(torque, dtype=float), speed.shape)
-    system, _ = operated(model, float(means[0]), gear)
+    system, _ = at_operating_point(model, float(means[0]), gear)
     asked = [main_order(model)] if orders is None else orders
     nodes: Sequence[str] = model.landmarks.throws
     if len(nodes) == 1:  # a lumped engine
@@ -87,7 +87,7 @@ def input_shaft(model: Model) -> str:
 
 def modes(model: Model, gear: str | None = None) -> xr.Dataset:
     """Undamped elastic modes about the mean torque, with the ``order_speed`` [rad/s] of the firing order."""
-    system, _ = operated(model, mean_torque(model), gear)
+    system, _ = at_operating_point(model, mean_torque(model), gear)
     found = modal(system)
     found = found.isel(mode=np.flatnonzero(found.frequency.values > 0))
     return found.assign(order_speed=("mode", 2 * np.pi * found.frequency.values / main_order(model)))

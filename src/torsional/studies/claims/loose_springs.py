@@ -32,7 +32,7 @@ from torsional.numerics.stepping_plan import (
 )
 from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
-from torsional.solvers.transient.starts import State, starting
+from torsional.solvers.transient.starts import MotionState, starting
 from torsional.studies.claims.answers import main_order
 from torsional.system import System, assemble
 from torsional.units import RPM
@@ -97,7 +97,7 @@ class LooseMotion:
         return Problem.of(self.system, self.excitation, None, hold=self.model.landmarks.load)
 
     @cached_property
-    def start(self) -> State:
+    def start(self) -> MotionState:
         """Equilibrium under the mean torque."""
         given = self.problem.acting, self.model.landmarks.load, self.speed
         return starting("equilibrium", self.system, *given)

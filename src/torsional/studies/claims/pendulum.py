@@ -11,7 +11,7 @@ from torsional.absorbers import CentrifugalPendulum
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.harmonic import response
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims.answers import INPUT, at_input, curves, floats, lowest, mean_torque, speeds
 from torsional.studies.claims.base import Figure, Finding, claim
 from torsional.studies.claims.trucks import Trucks, joined, only, replaced, without
@@ -23,7 +23,7 @@ def quiet_order(model: Model, speed: float) -> float:
     name = only(model, CentrifugalPendulum)
     pendulum: Any = model.components[name]
     bare = replaced(model, name, damping=0.0)
-    system, _ = operated(bare, mean_torque(bare))
+    system, _ = at_operating_point(bare, mean_torque(bare))
     carrier, push = system.node_index(pendulum.carrier), bare.landmarks.crankshaft
 
     def motion(order: Array) -> Array:

@@ -14,7 +14,7 @@ from torsional.engine import Excitation
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.solvers.harmonic import harmonic_response
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims.answers import (
     INPUT,
     at_input,
@@ -86,7 +86,7 @@ def damped(model: Model, damping: float) -> Model:
 def transfer(model: Model) -> Callable[[Array], ComplexArray]:
     """Angle of the output over that of the primary at the firing order, as a function of speed."""
     first, _, output = Parts.of(model).nodes
-    system, order = operated(model, mean_torque(model))[0], main_order(model)
+    system, order = at_operating_point(model, mean_torque(model))[0], main_order(model)
 
     def ratio(speed: Array) -> ComplexArray:
         angle = harmonic_response(system, Excitation.unit(first, [order], speed)).angle.isel(order=0)

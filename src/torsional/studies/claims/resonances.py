@@ -7,7 +7,7 @@ import numpy as np
 from torsional.components import Coupling, GearPair
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims.answers import (
     by_gear,
     by_gear_dataset,
@@ -30,7 +30,7 @@ MODES = "undamped modes about 60 % of the peak torque; order speed: where the fi
 
 def twists(model: Model, gear: str, place: int) -> dict[str, float]:
     """Twist of every spring in one mode, referred to engine speed, the largest being one."""
-    system, _ = operated(model, mean_torque(model), gear)
+    system, _ = at_operating_point(model, mean_torque(model), gear)
     c, share = system.connections, modes(model, gear).elastic_share.isel(mode=place).values
     spring = c.stiffness > 0
     twist = np.sqrt(share[spring] / c.stiffness[spring]) / np.abs(c.weights[spring]).max(axis=1)

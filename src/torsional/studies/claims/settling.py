@@ -12,7 +12,7 @@ from torsional.engine.orders import HIGHEST_ORDER
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.piecewise_motion import PiecewiseMotion
-from torsional.solvers.transient import OrderTorques, State, TorqueHistory, engine_drive, steady_state, transient
+from torsional.solvers.transient import MotionState, OrderTorques, TorqueHistory, engine_drive, steady_state, transient
 from torsional.system import System, assemble
 
 STEP = 5e-5
@@ -51,10 +51,10 @@ class Stepped:
         """The time step [s], a whole number of which makes a period."""
         return self.period / float(np.ceil(self.period / STEP))
 
-    def begun(self, timed: PiecewiseMotion, state: Array) -> State:
+    def begun(self, timed: PiecewiseMotion, state: Array) -> MotionState:
         """A state of the exact motion in time, at the crank angle zero, as a start; friction remembers nothing."""
         base = timed.bases.coordinates
-        return State.at_rest(self.system).moved(base.angles(state), base.rates(state))
+        return MotionState.at_rest(self.system).moved(base.angles(state), base.rates(state))
 
     def settled(self, start: object = "equilibrium") -> xr.Dataset:
         """The steady motion that a run ends on, in orders."""

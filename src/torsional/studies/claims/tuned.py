@@ -12,7 +12,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
-from torsional.solvers.operating import operated
+from torsional.solvers.operating import at_operating_point
 from torsional.studies.claims.answers import (
     INPUT,
     at_input,
@@ -59,7 +59,7 @@ def sized(model: Model, inertia: float, carrier: str = "") -> Model:
 
 def order_speeds(model: Model) -> Array:
     """Order speeds [rad/s] of the undamped elastic modes in top gear."""
-    system, _ = operated(model, mean_torque(model))
+    system, _ = at_operating_point(model, mean_torque(model))
     return _elastic(natural_frequencies(system)) / main_order(model)
 
 

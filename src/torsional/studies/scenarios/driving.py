@@ -138,10 +138,10 @@ def traction_loss(block: TractionLoss, model: Model) -> Plan:
 
 def within_stop(model: Model, gear: str, **torques: float) -> None:
     """Refuse mean engine torques at which an absorber spring rests on its stop; the names are those of the keys."""
-    from torsional.solvers.operating import operated
+    from torsional.solvers.operating import at_operating_point
 
     for key, torque in torques.items():
-        _, point = operated(model, torque, gear)
+        _, point = at_operating_point(model, torque, gear)
         for spring in model.landmarks.springs:
             if point.stage(spring) == "stop":
                 law = point.laws[point.names.index(spring)]

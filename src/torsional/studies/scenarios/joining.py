@@ -12,7 +12,7 @@ import numpy as np
 
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 from torsional.stamps import GROUND, Mass
 from torsional.structure import weight_rows
 from torsional.system import System, assemble
@@ -52,7 +52,7 @@ class Turning:
         return np.asarray((speeds @ rows.T) @ (inertia * (rows @ self.system.speed_ratio)))
 
 
-def carried_over(state: State, old: Turning, new: Turning, crank: str) -> State:
+def carried_over(state: MotionState, old: Turning, new: Turning, crank: str) -> MotionState:
     """A state of the ``old`` line as one of the ``new``.
 
     The angle of the ``crank`` stays; where gears mesh at another angle the part behind them is turned as a whole.
@@ -65,7 +65,7 @@ def carried_over(state: State, old: Turning, new: Turning, crank: str) -> State:
     own = [memory.get(name, 0.0) for name in new.system.connections.names]
     kept = np.array([*own, *state.memory[len(names) :]])  # behind them what drives remember, as the engine's friction
     angle = _angles(state, old, new, crank, places)
-    return State(state.time, angle, speed, kept, state.integral, state.reference, charge=state.charge)
+    return MotionState(state.time, angle, speed, kept, state.integral, state.reference, charge=state.charge)
 
 
 def _places(old: Turning, new: Turning) -> list[int]:
@@ -81,7 +81,7 @@ def _met(new: Turning, wanted: Array) -> Array:
     return np.asarray(np.linalg.lstsq(heavy * (rows @ new.system.T), heavy[:, 0] * left, rcond=None)[0])
 
 
-def _angles(state: State, old: Turning, new: Turning, crank: str, places: list[int]) -> Array:
+def _angles(state: MotionState, old: Turning, new: Turning, crank: str, places: list[int]) -> Array:
     """Coordinates with the twists of the old line and the angle of its crank, each node as close as can be to where it
     was."""
     turned = new.frame * state.time * (old.system.speed_ratio[places] - new.system.speed_ratio)

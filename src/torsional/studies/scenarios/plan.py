@@ -13,7 +13,7 @@ from torsional.powertrain import Powertrain
 from torsional.solvers.transient.acting import Drive
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
-from torsional.solvers.transient.starts import State, starting
+from torsional.solvers.transient.starts import MotionState, starting
 from torsional.studies.scenarios.lines import stuck
 from torsional.studies.scenarios.schedule import Knots
 from torsional.system import System, assemble
@@ -89,22 +89,22 @@ class Plan:
     phases: tuple[Phase, ...] = ()
     release: Release | None = None
 
-    def started(self, system: System) -> State:
+    def started(self, system: System) -> MotionState:
         """Where it starts: as asked for, but turned, and part of it slower, and linings that hold a torque."""
         if self.stuck:
             return self._carrying(system)
         if not (self.turned or self.lag):
             return self._as_asked(system)
-        state = State.at_rest(system)
+        state = MotionState.at_rest(system)
         slow = np.array([node in self.lagging for node in system.coordinates])
         angle = np.full(len(system.coordinates), self.turned)
-        return State(0.0, angle, np.where(slow, -self.lag, 0.0), state.memory, state.integral)
+        return MotionState(0.0, angle, np.where(slow, -self.lag, 0.0), state.memory, state.integral)
 
-    def _as_asked(self, system: System) -> State:
+    def _as_asked(self, system: System) -> MotionState:
         problem = Problem.of(system, self.drives, self.speed, hold=self.hold, levels=self.levels)
         return starting(self.start, system, problem.acting, self.hold, problem.start_speed)
 
-    def _carrying(self, system: System) -> State:
+    def _carrying(self, system: System) -> MotionState:
         """The start in which linings stick: friction remembers the twist that its mean torque takes."""
         twin = assemble(stuck(self.line, self.stuck))
         state = self._as_asked(twin)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from torsional.solvers.transient.marching import COMPLETE
 from torsional.solvers.transient.run import Progress, transient
-from torsional.solvers.transient.starts import State
+from torsional.solvers.transient.starts import MotionState
 from torsional.studies.scenarios.joining import Turning, carried_over
 from torsional.studies.scenarios.lines import SYNCHRONISER
 from torsional.studies.scenarios.plan import Plan
@@ -31,12 +31,12 @@ def moved(plan: Plan, step: float, output: float, progress: Progress | None) -> 
         runs.append(_one(plan, own, state, end, step, output, _within(progress, plan.duration)))
         if runs[-1].attrs["status"] != COMPLETE:
             break
-        state = State.ending(runs[-1], own.system)
+        state = MotionState.ending(runs[-1], own.system)
     return (as_one(runs, turning) if plan.later else runs[0]), turning
 
 
 def _one(
-    plan: Plan, own: Turning, state: State, end: float, step: float, output: float, progress: Progress | None
+    plan: Plan, own: Turning, state: MotionState, end: float, step: float, output: float, progress: Progress | None
 ) -> xr.Dataset:
     return transient(
         own.system,

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from torsional.absorbers import Absorber, CoilSpring, GuideFriction, condensed
+from torsional.absorbers import Absorber, CoilSpring, GuideFriction, condensed_flywheel
 from torsional.errors import ModelError
 from torsional.files.schema.absorbers.base import AbsorberBlock
 from torsional.files.schema.fields import (
@@ -84,7 +84,7 @@ class SpringFlywheelFields(AbsorberBlock):
 
     def concept(self) -> Absorber:
         """Two flywheels and the characteristic of the design, with every body as its detail."""
-        return condensed(type(self).makes(**self.values()))
+        return condensed_flywheel(type(self).makes(**self.values()))
 
 
 def _pair(key: str, value: float | tuple[float, ...]) -> tuple[float, ...]:
