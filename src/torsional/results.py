@@ -79,6 +79,8 @@ NAMES: dict[str, Named] = {
     "direction": Named("", "whether a sweep in time goes up or down"),
     "periods": Named("", "periods of the drive after which a motion repeats itself, 0 if never"),
     "exponent": Named("", "largest Lyapunov exponent, in one over the period"),
+    "method_share": Named("", "energy that time steps made or lost of their own, over all that passed through"),
+    "notes": Named("", "what else is to be said of a motion in time: guarded contacts, halved steps"),
     "residual": Named("", "what is left of the scaled equations"),
     "iterations": Named("", "corrections a point took"),
     "event": Named("", "what a point is: fold, period doubling, an end on another branch; of a run, what was done"),

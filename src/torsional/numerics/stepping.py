@@ -43,18 +43,9 @@ def march(
     places = np.ascontiguousarray(chosen, dtype=np.int64)
     _check(step, steps, places)
     told = Settings() if settings is None else settings
-    moved, records = state.copied(), _records(plan, places.size)
-    numbers = (method.alpha_m, method.alpha_f, method.beta, method.gamma)
-    typed = told._replace(
-        guard=bool(told.guard),
-        passes=int(told.passes),
-        rungs=int(told.rungs),
-        agreement=float(told.agreement),
-        angle_error=float(told.angle_error),
-        relative_error=float(told.relative_error),
-        production=float(told.production),
-    )
-    status = Status(run(plan, moved, new_work(plan, moved), typed, numbers, float(step), int(steps), places, records))
+    moved, records = state.copied(), blank_records(plan, places.size)
+    numbers, own = (method.alpha_m, method.alpha_f, method.beta, method.gamma), typed(told)
+    status = Status(run(plan, moved, new_work(plan, moved), own, numbers, float(step), int(steps), places, records))
     if not (np.isfinite(moved.coordinates).all() and np.isfinite(moved.ledger).all()):
         status = Status.NOT_FINITE
     elif status == Status.DONE and produced(moved.ledger, state.ledger) > told.production:
@@ -86,7 +77,21 @@ def _check(step: float, steps: int, places: IntArray) -> None:
         raise ModelError("a step to record lies beyond the last", where="at", found=str(places[-1]), allowed=str(steps))
 
 
-def _records(plan: Plan, count: int) -> Records:
+def typed(told: Settings) -> Settings:
+    """Settings of the types that the loop is compiled for."""
+    return told._replace(
+        guard=bool(told.guard),
+        passes=int(told.passes),
+        rungs=int(told.rungs),
+        agreement=float(told.agreement),
+        angle_error=float(told.angle_error),
+        relative_error=float(told.relative_error),
+        production=float(told.production),
+    )
+
+
+def blank_records(plan: Plan, count: int) -> Records:
+    """Room for a ``count`` of records."""
     n, connections, laws = plan.tape.node.size, plan.constants.shape[1], plan.laws.places.shape[1]
     shapes = ((count,), (3, count, n), (2, count, connections), (3, count, laws), (count, len(Entry)))
     return Records(*(np.full(shape, np.nan) for shape in shapes))

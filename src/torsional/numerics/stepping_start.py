@@ -166,11 +166,11 @@ def _bend(plan: Plan, state: State, time: float, step: float) -> None:
         shared = laws.shares[own] @ np.abs(state.connection[TORQUE, laws.load_of[own]])
         total = laws.loads[LOAD_CONSTANT, l] * level + laws.loads[LOAD_SQUARED, l] * state.reference[SQUARED] + shared
         state.law[LOAD, l] = values[places[LOAD_AT, l]] = max(0.0, total)
-    _at_rest(places, values, state.connection, state.law, step)
+    at_rest(places, values, state.connection, state.law, step)
 
 
 @uncounted()
-def _at_rest(places: IntArray, values: Array, connection: Array, law: Array, step: float) -> None:
+def at_rest(places: IntArray, values: Array, connection: Array, law: Array, step: float) -> None:
     """Torques of the laws where no time passes; the strain energy of those without memory counts from here."""
     for l in range(places.shape[1]):
         e, torque, memory = places[LAW_OF, l], law_at(places[ADDRESS, l]), law[MEMORY, l]

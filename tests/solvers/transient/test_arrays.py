@@ -201,9 +201,7 @@ def test_the_arrays_move_as_the_system_does() -> None:
     problem = Problem.of(system, (), 80.0, levels=levels, reference_time=FOLLOWING)
     n, times = len(system.coordinates), np.linspace(0.0, 0.05, 11)
     start = np.concatenate([np.linspace(0.08, -0.02, n), np.zeros(n), [0.0, 80.0]])
-    marched = explicit_march(
-        problem.equations, times, start[:n], start[n : 2 * n], tolerance=1e-9, flows=FLOWS
-    )
+    marched = explicit_march(problem.equations, times, start[:n], start[n : 2 * n], tolerance=1e-9, flows=FLOWS)
     expected = independent(system, 80.0, times, start)
     scale = np.abs(expected).max(axis=1)
     np.testing.assert_allclose(marched.angles.T, expected[:n], atol=2e-7 * scale[:n].max())

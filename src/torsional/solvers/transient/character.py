@@ -7,17 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from torsional.numerics.arrays import Array
+from torsional.numerics.stroboscopic import gap_between
 
 REGULAR = 0.01
 """Largest exponent a period that counts as none; what 300 periods of a quasi-periodic motion leave is below it."""
 THIN = 1.3
 """Largest dimension of stroboscopic points that lie on a closed curve."""
-APART = 30.0
-"""How much better a motion repeats itself after its own period than after fewer."""
 EVEN = 0.1
 """Share of the mean step by which the steps of a drift differ at most."""
-NOTHING = 1e-3
-"""Share of the tolerance below which a difference is taken for none."""
 FEWEST = 200
 """Points below which a dimension means nothing."""
 CLOSE, FAR = 0.01, 0.1
@@ -50,32 +47,9 @@ class Character:
         return told[self.kind]
 
 
-def repeats(points: Array, size: float, longest: int, tolerance: float) -> tuple[int, float]:
-    """The fewest periods after which stroboscopic ``points`` (periods, states) repeat themselves, or 0, and what is
-    left of the difference over the motion's ``size``.
-
-    The last ``longest`` points must all agree with those k before them, and much better than with those of fewer
-    periods before; and so must those still to come if the difference goes on to fall as it does.  What dies away
-    slowly, alternating or in a spiral, is near itself after some turns, but has far to go.
-
-    >>> repeats(np.array([[1.0], [2.0]] * 8), 1.0, 4, 1e-9)
-    (2, 0.0)
-    """
-    best = np.inf
-    for k in range(1, longest + 1):
-        if len(points) < longest + k:
-            break
-        left = _left(points, size, longest, k)
-        certain = k == 1 or left <= NOTHING * tolerance
-        if left <= min(tolerance, best / APART) and (certain or _to_come(points, size, longest, k) <= best / APART):
-            return k, left
-        best = min(best, left)
-    return 0, best
-
-
 def restless(points: Array, size: float, longest: int) -> float:
     """The largest difference of the last ``longest`` points from those one period before, over the motion's size."""
-    return _left(points, size, longest, 1) if len(points) > longest else np.inf
+    return float(gap_between(points, size, longest, 1)) if len(points) > longest else np.inf
 
 
 def drifts(points: Array, longest: int) -> bool:
@@ -87,20 +61,6 @@ def drifts(points: Array, longest: int) -> bool:
     steps = np.diff(points[-longest - 1 :], axis=0)
     mean = steps.mean(axis=0)
     return bool(np.linalg.norm(steps - mean, axis=1).max() < EVEN * np.linalg.norm(mean))
-
-
-def _left(points: Array, size: float, longest: int, k: int) -> float:
-    """Largest distance of the last points from those k before, over the motion's size."""
-    gap = np.sqrt(np.square(points[-longest:] - points[-longest - k : len(points) - k]).sum(axis=1)).max()
-    return float(gap / size) if size > 0 else 0.0
-
-
-def _to_come(points: Array, size: float, longest: int, k: int) -> float:
-    """Distance to where the points go if the one from k before falls on by the same ratio; infinite if it does not."""
-    if len(points) < 2 * longest + k:
-        return np.inf
-    now, before = _left(points, size, longest, k), _left(points[:-longest], size, longest, k)
-    return now / (1.0 - (now / before) ** (k / longest)) if now < before else np.inf
 
 
 def dimension(points: Array) -> float:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from torsional.laws import Contacts
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping import Entry
 from torsional.numerics.stepping_plan import CONTACT_TIME, PACE
-from torsional.solvers.transient.marching import Accuracy, Marched, method_share
+from torsional.numerics.stepping_state import State as Standing
+from torsional.solvers.transient.marching import Accuracy, method_share
 from torsional.solvers.transient.problem import Problem
 
 TOLD = 0.01
@@ -29,35 +32,45 @@ their tabs and rattle there.
 _MOST = 4
 
 
-def honest(problem: Problem, told: Marched, accuracy: Accuracy) -> dict[str, str]:
+def honest(problem: Problem, standing: Standing | None, accuracy: Accuracy) -> dict[str, str]:
     """What is to be said, in words: of contacts ``guarded`` by dampers, ``damped`` where that is felt, and so on."""
     if accuracy.method in ("explicit", "exact"):
         return {}
     said = _unresolved(problem, accuracy.step) | _restless(problem, accuracy.step)
     names = problem.system.connections.names
-    said |= _guarded(problem, told, accuracy.step) | _unguarded(problem, accuracy.step)
-    share = method_share(told)
+    said |= _guarded(problem, standing, accuracy.step) | _unguarded(problem, accuracy.step)
+    share = method_share(standing)
     if abs(share) > TOLD:
         did = "made" if share > 0 else "took away"
         said["energy_error"] = (
             f"the time steps {did} {abs(share):.2g} of the energy that passed through; take a smaller step"
         )
-    elif alone := _made_alone(told, names):
+    elif alone := _made_alone(standing, names):
         said["energy_error"] = alone
     return said
 
 
-def _guarded(problem: Problem, told: Marched, step: float) -> dict[str, str]:
+NOTES = ("energy_error", "damped", "guarded", "unguarded", "restless", "refined", "unresolved")
+"""What may be said of a run, each the name of an attribute."""
+
+
+def said(attributes: Mapping[str, object]) -> str:
+    """All that the attributes of a run say of it, in one line; "" where there is nothing to be said."""
+    told = [name for name in NOTES if name in attributes and not (name == "guarded" and "damped" in attributes)]
+    return "; ".join(f"{name}: {attributes[name]}" for name in told)
+
+
+def _guarded(problem: Problem, standing: Standing | None, step: float) -> dict[str, str]:
     """Contacts that the step gave a damper, and what it took; ``damped`` where that is felt."""
     hinges, names = problem.plan.hinges, problem.system.connections.names
     raised = (step * hinges.values[PACE] > STIFF) & (hinges.values[CONTACT_TIME] < 0.5 * step)
-    if told.end.standing is None or not raised.any():
+    if standing is None or not raised.any():
         return {}
     listed = list(dict.fromkeys(names[e] for e in hinges.of[raised]))
     more = f" and {len(listed) - _MOST} more" if len(listed) > _MOST else ""
-    taken = told.end.standing.passed[2]
-    whole = float(taken.sum()) / max(float(told.end.standing.ledger[Entry.THROUGHPUT]), 1e-300)
-    nearby = taken / np.maximum(_beside(problem, told.end.standing.passed[1]), 1e-300)
+    taken = standing.passed[2]
+    whole = float(taken.sum()) / max(float(standing.ledger[Entry.THROUGHPUT]), 1e-300)
+    nearby = taken / np.maximum(_beside(problem, standing.passed[1]), 1e-300)
     worst = int(nearby.argmax())
     took = f"it took {max(whole, 0.0):.2g} of the energy that passed through"
     if nearby[worst] > FELT:
@@ -92,11 +105,11 @@ def _beside(problem: Problem, through: Array) -> Array:
     return np.asarray(np.where(touches, most, np.inf).min(axis=1))
 
 
-def _made_alone(told: Marched, names: tuple[str, ...]) -> str:
+def _made_alone(standing: Standing | None, names: tuple[str, ...]) -> str:
     """The connection at which the steps made most energy of their own, if that is much for what goes through it."""
-    if told.end.standing is None:
+    if standing is None:
         return ""
-    made, through = told.end.standing.passed[:2]
+    made, through = standing.passed[:2]
     share = np.where(made > 0, made, 0.0) / np.where(through > 0, through, 1.0)
     worst = int(share.argmax()) if share.size else 0
     if not share.size or share[worst] <= ALONE:

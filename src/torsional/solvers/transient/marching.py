@@ -133,9 +133,8 @@ def marched(problem: Problem, state: MotionState, steps: int, accuracy: Accuracy
     )
 
 
-def method_share(told: Marched) -> float:
+def method_share(standing: Standing | None) -> float:
     """Energy that the method itself has made (or lost, negative), over all that passed through; nan without ledger."""
-    standing = told.end.standing
     if standing is None:
         return float("nan")
     through = float(standing.ledger[Entry.THROUGHPUT])

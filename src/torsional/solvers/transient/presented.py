@@ -45,7 +45,7 @@ def presented(problem: Problem, told: Marched, keep: Sequence[str], **settings: 
         steps=told.steps,
         iterations=told.iterations,
         status=told.status,
-        method_share=method_share(told),
+        method_share=method_share(told.end.standing),
         end_time=told.end.time,
         end_reference=float("nan") if told.end.reference is None else told.end.reference,
         system_hash=problem.line_hash,

@@ -105,7 +105,7 @@ def transient(
     state = resumed(start, state, problem, run.accuracy)
     moments = wanted(output, time)
     told = run.over(state, time, moments) if isinstance(moments, float) else run.at(state, time, moments)
-    notes |= honest(problem, told, run.accuracy)
+    notes |= honest(problem, told.end.standing, run.accuracy)
     settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
     found = presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
     return resumable(found, problem, told.end, run.accuracy)

@@ -14,7 +14,8 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import dataset
 from torsional.solvers.transient.character import Character
-from torsional.solvers.transient.marching import Accuracy, Marched
+from torsional.solvers.transient.honesty import honest
+from torsional.solvers.transient.marching import Accuracy, Marched, method_share
 from torsional.solvers.transient.presented import ending
 from torsional.solvers.transient.problem import Drives, Levels, Problem
 from torsional.solvers.transient.starts import starting
@@ -58,7 +59,8 @@ def steady_state(
     ``angle`` (order, node) [rad], ``twist`` and ``torque`` (order, element) complex 0-peak, order 0 the mean, orders
     multiples of the base order over ``parts`` (default: 2 or what the periods ask for); ``end_angle`` and so on are a
     start for the next run, at the crank angle zero; attributes ``kind``, ``status``, ``periods``, ``exponent``
-    [1/period], ``dimension``.
+    [1/period], ``dimension``; what the
+    steps made or lost of the energy is ``method_share``, and what else is to be said of them as in `transient`.
     Raises ModelError where nothing that drives the line repeats itself.
 
     >>> from torsional.components import Coupling, Inertia
@@ -153,7 +155,8 @@ def _presented(scope: Stroboscope, told: Marched, orders: Array, character: Char
         end_time=0.0,
         end_reference=float("nan") if end.reference is None else end.reference,
         system_hash=problem.line_hash,
-        **scope.notes,
+        method_share=method_share(end.standing),
+        **(honest(problem, end.standing, scope.settled) | scope.notes),
     ).assign_coords(speed=problem.start_speed)
 
 

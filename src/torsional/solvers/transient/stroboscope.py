@@ -8,16 +8,14 @@ from functools import cached_property
 import numpy as np
 
 from torsional.numerics.arrays import Array
-from torsional.solvers.transient.character import Character, dimension, drifts, named, repeats, restless
+from torsional.numerics.stepping_batch import BLOCK, LITTLE, VIEWS
+from torsional.numerics.stroboscopic import repeats
+from torsional.solvers.transient.character import Character, dimension, drifts, named, restless
 from torsional.solvers.transient.marching import Accuracy, Marched, marched
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, grounded, tangents
 from torsional.system import System
 
-BLOCK = 32
-"""Periods between two looks at whether a motion repeats itself."""
-VIEWS = 32
-"""Moments of a period at which the size of the motion is measured."""
 NEAR = 1e-6
 """Distance of the neighbour, over the size of the motion, from which the exponent is measured."""
 PARTING, SKIPPED = 300, 50
@@ -25,8 +23,8 @@ PARTING, SKIPPED = 300, 50
 MAPPED = 1500
 """Stroboscopic points for a dimension."""
 FALLING = 0.7
-LITTLE, SECOND = 0.02, 320
-"""Change from period to period, over the motion's size, that half the step is asked about; periods that it is given."""
+SECOND = 320
+"""Periods that half the step is given."""
 FURTHER = np.concatenate([-np.geomspace(1e-3, 1.0, 7), np.geomspace(1e-3, 1.0, 7)])
 """Angles [rad] at which a law that is flat in equilibrium is asked for its slope."""
 
@@ -65,13 +63,16 @@ class Stroboscope:
     def _rows(self) -> tuple[Array, Array]:
         """What turns angles and speeds into states whose squares are energies; rigid rotation is not seen."""
         system = self.problem.system
+        stiffness = sizes(system, self.state.angle, self.problem.start_speed)
+        return np.sqrt(stiffness)[:, None] * system.connections.weights, self.rates
+
+    @property
+    def rates(self) -> Array:
+        """What turns speeds into states whose squares are energies (inertias, coordinates)."""
+        system = self.problem.system
         masses = system.switched(self.problem.start_speed).masses
-        stiffness = _stiffness(system, self.state.angle, self.problem.start_speed)
-        w = np.sqrt(stiffness)[:, None] * system.connections.weights
         v = np.sqrt(masses.inertia)[:, None] * masses.weights
-        if not grounded(system):
-            v = v - np.outer(v.sum(axis=1), system.M.sum(axis=0) / system.M.sum())
-        return w, v
+        return v if grounded(system) else v - np.outer(v.sum(axis=1), system.M.sum(axis=0) / system.M.sum())
 
     def seen(self, angle: Array, speed: Array) -> Array:
         """States (moments, states) [√J] of angles and speeds (moments, coordinates)."""
@@ -164,7 +165,7 @@ class Stroboscope:
         return named(0, left, exponent, float("nan"), falling)
 
 
-def _stiffness(system: System, angle: Array, speed: float) -> Array:
+def sizes(system: System, angle: Array, speed: float) -> Array:
     """A stiffness of every connection's own size [Nm/rad]: its slope in equilibrium, or where a law is flat there a
     mean of its slopes further out."""
     found = tangents(system, angle, speed)[0].real

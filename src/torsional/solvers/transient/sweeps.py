@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,14 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.results import of_model
 from torsional.solvers.periodic.machine import checked_engine, common_orders
+from torsional.solvers.transient.batch_results import row_dataset
+from torsional.solvers.transient.batches import Asked, Batch
+from torsional.solvers.transient.honesty import said
 from torsional.solvers.transient.problem import Drives
 from torsional.solvers.transient.steady import steady_state
 from torsional.system import System, assemble
 
-SCALARS = ("kind", "status", "periods", "exponent")
+SCALARS = ("kind", "status", "periods", "exponent", "method_share")
 PARTS = 2
 """Orders of a sweep are multiples of the base order over this."""
 
@@ -94,7 +98,7 @@ def _point(
 
 def _told(point: xr.Dataset) -> xr.Dataset:
     """A point with what is said of it as variables."""
-    return point.assign({name: ((), point.attrs[name]) for name in SCALARS})
+    return point.assign({name: ((), point.attrs[name]) for name in SCALARS} | {"notes": ((), said(point.attrs))})
 
 
 @checked
@@ -128,7 +132,11 @@ def steady_map(
 
     Absorbers that have details are taken in detail.  Along the speeds each run begins where the one before it ended,
     at the first with the linear response.  Dimensions (gear, mean_torque, speed, order, node or element), beside
-    them ``kind``, ``status`` and ``periods``.
+    them ``kind``, ``status`` and ``periods``, and of the steps ``method_share`` and ``notes``, see `transient`.
+
+    All speeds of a torque are settled in one compiled loop, the torques side by side on the processors at hand.  A
+    point that the loop does not see repeat itself is settled by `steady_state`, as its ``status`` says; where the line
+    or its drives are not made for the loop all points are, and the attribute ``one_by_one`` says why.
     Raises ModelError for a model without an engine.
     """
     names = model.chosen_gears(gears)
@@ -137,7 +145,8 @@ def steady_map(
     rows = []
     for name in names:
         system = assemble(model.detailed().powertrain(name))
-        own = [_along(model, system, at, float(torque), hold, highest_order, base_order, settings) for torque in loads]
+        drives = [[engine_drive(model, speed, torque, highest_order, base_order) for speed in at] for torque in loads]
+        own = _rows(system, at, drives, {"hold": hold, "parts": PARTS, **settings})
         rows.append(xr.concat(own, "torque_value", **_JOIN))
     found = xr.concat(rows, "gear", **_JOIN).rename(value="speed_value")
     found = found.drop_vars("speed", errors="ignore").rename(speed_value="speed", torque_value="mean_torque")
@@ -145,19 +154,21 @@ def steady_map(
     return of_model(found.assign_attrs(analysis="steady map in time"), model)
 
 
-def _along(
-    model: Model,
-    system: System,
-    speeds: Array,
-    torque: float,
-    hold: str,
-    highest_order: float,
-    base_order: float | None,
-    settings: dict[str, Any],
-) -> xr.Dataset:
-    """One row of the map."""
+def _rows(
+    system: System, speeds: Array, drives: Sequence[Sequence[Excitation]], settings: dict[str, Any]
+) -> list[xr.Dataset]:
+    """The rows of one gear: in one compiled loop, or point by point where that cannot be."""
+    reason = "settings of its own"
+    if settings.keys() <= {part.name for part in fields(Asked)}:
+        batch = Batch(system, drives, Asked(**settings))
+        reason = batch.refusal
+        if not reason:
+            return [row_dataset(row) for row in batch.settled()]
+    found = [_along(system, speeds, row, settings) for row in drives]
+    return [row.assign_attrs(one_by_one=reason) for row in found]
 
-    def drive(speed: float) -> Excitation:
-        return engine_drive(model, speed, torque, highest_order, base_order)
 
-    return steady_sweep(system, drive, speeds, directions=("up",), hold=hold, **settings).isel(direction=0, drop=True)
+def _along(system: System, speeds: Array, drives: Sequence[Excitation], settings: dict[str, Any]) -> xr.Dataset:
+    """One row of the map, point by point."""
+    at = dict(zip(speeds.tolist(), drives, strict=True))
+    return steady_sweep(system, at.__getitem__, speeds, directions=("up",), **settings).isel(direction=0, drop=True)
