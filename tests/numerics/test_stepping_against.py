@@ -40,8 +40,8 @@ def cranked() -> Equations:
 
 SYSTEMS = {
     "stribeck": (with_law(Stribeck(2.0, 3.0, 0.1, 0.02)), {}, 1.9),
-    "jenkins": (with_law(JENKINS), {"sliders": JENKINS.address}, 1.9),
-    "pressed bristles": (with_law(BRISTLES, load=(0.2, 1e-4, [(0, 0.05)])), {"bristles": BRISTLES.address}, 1.6),
+    "jenkins": (with_law(JENKINS), {"flows": {JENKINS.address: JENKINS.flow_address}}, 1.9),
+    "pressed bristles": (with_law(BRISTLES, load=(0.2, 1e-4, [(0, 0.05)])), {"flows": {BRISTLES.address: BRISTLES.flow_address}}, 1.6),
     "crank": (cranked(), {}, 1.9),
     "governor": (governed(), {}, 1.9),
     "turning": (turning(), {}, 1.9),

@@ -17,8 +17,8 @@ Number = TypeVar("Number", float, Array)
 def depth(angle: Number, rate: Number, gap: Number, side: Number, time: Number) -> Number:
     """s (φ − g + τ φ̇) [rad] beyond the gap g on the side s = ±1, with a contact time τ [s]; closed where positive.
 
-    >>> depth(-0.3, -2.0, gap=-0.25, side=-1.0, time=0.01)  # 0.05 rad beyond, and 0.02 rad on in 0.01 s
-    0.07
+    >>> depth(-0.75, -2.0, gap=-0.25, side=-1.0, time=0.125)
+    0.75
     """
     return side * (angle - gap + time * rate)
 
