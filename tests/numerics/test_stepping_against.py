@@ -9,7 +9,7 @@ from tests.numerics.test_stepping import MEMBERS, order_of, wall
 from tests.numerics.test_stepping_energy import BRISTLES, DRIVE, turning, with_law
 from tests.validation import dmf_lcp
 
-from torsional.laws import Jenkins, Stribeck
+from torsional.laws import Jenkins, Law, Stribeck
 from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.complementarity_step import OneSided, Step, step_problem
 from torsional.numerics.explicit_march import explicit_march
@@ -38,10 +38,15 @@ def cranked() -> Equations:
     return equations([0.05, 0.5], links, [DRIVE], [Crank([1.0, 0.0], 2.0, 0.05, 0.15, 0.3, 0.001)], speed=30.0)
 
 
+def flows(law: Law) -> dict[int, int]:
+    """Where the rate of a law's memory is told."""
+    return {law.address: law.flow_address}
+
+
 SYSTEMS = {
     "stribeck": (with_law(Stribeck(2.0, 3.0, 0.1, 0.02)), {}, 1.9),
-    "jenkins": (with_law(JENKINS), {"flows": {JENKINS.address: JENKINS.flow_address}}, 1.9),
-    "pressed bristles": (with_law(BRISTLES, load=(0.2, 1e-4, [(0, 0.05)])), {"flows": {BRISTLES.address: BRISTLES.flow_address}}, 1.6),
+    "jenkins": (with_law(JENKINS), {"flows": flows(JENKINS)}, 1.9),
+    "pressed bristles": (with_law(BRISTLES, load=(0.2, 1e-4, [(0, 0.05)])), {"flows": flows(BRISTLES)}, 1.6),
     "crank": (cranked(), {}, 1.9),
     "governor": (governed(), {}, 1.9),
     "turning": (turning(), {}, 1.9),
