@@ -86,3 +86,11 @@ def test_what_the_step_makes_of_contacts_is_not_called_the_motion() -> None:
     found = steady_state(system, given, hold="vehicle", most_periods=300, parts=2)
     assert found.attrs["kind"] == "periodic"
     assert found.attrs["step"] == pytest.approx(4.464e-5, rel=1e-3) and "halved" in found.attrs["refined"]
+
+
+def test_a_motion_that_is_lost_is_told() -> None:
+    """A spring that softens to nothing under a torque beyond what it can hold: the discs part for ever."""
+    law = Polynomial((1.0, 0.0, -0.5))
+    line = assemble(Powertrain({"disc": Inertia(1.0), "load": Inertia(2.0), "spring": Coupling("disc", "load", law)}))
+    with pytest.raises(ModelError, match="the steps lose the motion; found the motion grew beyond all numbers"):
+        steady_state(line, Excitation(("disc",), [1.0], 1.0, [[3.0]]), start="rest", step=0.05)

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping_batch import BLOCK, LITTLE, VIEWS
 from torsional.numerics.stroboscopic import repeats
@@ -15,6 +16,7 @@ from torsional.solvers.transient.marching import Accuracy, Marched, marched
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, grounded, tangents
 from torsional.system import System
+from torsional.units import show_speed
 
 NEAR = 1e-6
 """Distance of the neighbour, over the size of the motion, from which the exponent is measured."""
@@ -81,7 +83,7 @@ class Stroboscope:
 
     def run(self, periods: int) -> Marched:
         """Go on for some periods; the points are kept."""
-        told = marched(self.problem, self.state, periods * self.steps, self.settled, self.steps // VIEWS)
+        told = self._on(self.state, periods, self.steps // VIEWS)
         views = self.seen(told.angle, told.speed)
         self.points = np.concatenate([self.points, views[VIEWS::VIEWS]])
         last = views[-2 * VIEWS :]
@@ -91,8 +93,20 @@ class Stroboscope:
 
     def full(self, periods: int) -> Marched:
         """Go on for some periods with every step in the record."""
-        told = marched(self.problem, self.state, periods * self.steps, self.settled)
+        told = self._on(self.state, periods, 1)
         self.state = told.end
+        return told
+
+    def _on(self, state: MotionState, periods: int, every: int) -> Marched:
+        """Go on for some periods; ModelError where the steps lose the motion."""
+        told = marched(self.problem, state, periods * self.steps, self.settled, every)
+        if not np.isfinite(told.end.angle).all():
+            raise ModelError(
+                "the steps lose the motion",
+                where=show_speed(self.problem.start_speed),
+                found=f"{told.status}, with a step of {self.settled.step:.3g} s",
+                remedy="give stiff stops a contact time (damping), or take a smaller step",
+            )
         return told
 
     def exponent(self, periods: int = PARTING) -> float:
@@ -108,8 +122,8 @@ class Stroboscope:
         other = own.moved(share * step_off[0], share * step_off[1])
         grown = np.zeros(periods)
         for i in range(periods):
-            own = marched(self.problem, own.moved(0.0, 0.0), self.steps, self.settled, self.steps).end
-            other = marched(self.problem, other, self.steps, self.settled, self.steps).end
+            own = self._on(own.moved(0.0, 0.0), 1, self.steps).end
+            other = self._on(other, 1, self.steps).end
             angle, speed = other.angle - own.angle, other.speed - own.speed
             factor = np.linalg.norm(self.seen(angle[None], speed[None])) / (NEAR * self.size)
             grown[i] = np.log(factor) if factor > 0 else -np.inf
