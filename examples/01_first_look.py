@@ -13,11 +13,11 @@ def main() -> dict[str, float]:
     modes = tv.modal(system)
     for frequency, twisted in zip(modes.frequency.values[1:6], tv.dominant_element(modes).values[1:6], strict=True):
         print(f"{frequency:6.2f} Hz, third order at {20 * frequency:5.0f} rpm, most energy in {twisted}")
-    speed = np.linspace(600, 2000, 141) * np.pi / 30
+    speed = np.linspace(600, 2000, 141) * tv.RPM
     torque = truck.engine.excitation(truck.landmarks.throws, speed, 2000.0, orders=[1.5, 3.0, 4.5, 6.0])
     response = tv.harmonic_response(system, torque)
     third = tv.amplitude(tv.acceleration(response.angle.sel(node="gearbox_input")), order=3.0)
-    worst = third.speed.values[third.argmax("speed")] * 30 / np.pi
+    worst = third.speed.values[third.argmax("speed")] / tv.RPM
     print(f"third order at the gearbox input: {float(third.max()):.0f} rad/s² (0-peak) at {worst:.0f} rpm")
     return {"clutch_mode": float(modes.frequency[4]), "worst_speed": float(worst), "largest": float(third.max())}
 

@@ -7,14 +7,12 @@ import numpy as np
 import torsional as tv
 from torsional.plots import plot_periodic, save_png
 
-RPM = np.pi / 30
-
 
 def main(target: Path = Path("out/one_and_a_half_orders.png")) -> dict[str, float]:
     truck = tv.load_model("examples/truck_dmf_two_stage.yaml")
-    speed = np.linspace(700, 1200, 101) * RPM
+    speed = np.linspace(700, 1200, 101) * tv.RPM
     found = tv.model_response(truck, (speed[0], speed[-1]), torque=1200.0, at=speed)
-    low, high = np.sort(found.bifurcation_speed.values[found.bifurcation_type.values == "period doubling"]) / RPM
+    low, high = np.sort(found.bifurcation_speed.values[found.bifurcation_type.values == "period doubling"]) / tv.RPM
     print(f"from {low:.1f} to {high:.1f} rpm the firing order's motion gives way to one of every second ignition")
 
     here = found.isel(point=np.flatnonzero(found.speed == speed[48]))

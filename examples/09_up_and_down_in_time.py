@@ -4,7 +4,6 @@ import numpy as np
 
 import torsional as tv
 
-RPM = np.pi / 30
 HIGHEST = 36.0
 
 
@@ -15,16 +14,16 @@ def main() -> dict[str, float]:
     def engine(speed: float) -> tv.Excitation:
         return tv.engine_drive(truck, speed, 1400.0, HIGHEST)
 
-    speeds = np.arange(855, 906, 5) * RPM
+    speeds = np.arange(855, 906, 5) * tv.RPM
     found = tv.steady_sweep(system, engine, speeds, hold=truck.landmarks.load, highest_order=9.0, step=5e-5)
     up, down = abs(found.twist.sel(element="dmf", order=1.5)).values
-    for speed, rising, falling in zip(speeds / RPM, up, down, strict=True):
+    for speed, rising, falling in zip(speeds / tv.RPM, up, down, strict=True):
         print(f"{speed:4.0f} rpm: order 1.5 of the flywheel {rising:.4f} rad upwards, {falling:.4f} rad downwards")
 
-    start = found.sel(direction="up").isel(value=int(np.flatnonzero(speeds == 880 * RPM)[0]))
+    start = found.sel(direction="up").isel(value=int(np.flatnonzero(speeds == 880 * tv.RPM)[0]))
     knock = tv.TorqueHistory("gearbox_input", (0.0, 1.0, 1.0, 1.02, 1.02), (0.0, 0.0, -3000.0, -3000.0, 0.0))
     # the same speed and mean torque: a knock of 20 ms takes the line from the small motion to the large one
-    drives = [engine(880 * RPM), knock]
+    drives = [engine(880 * tv.RPM), knock]
     run = tv.transient(system, drives, 8.0, start, hold=truck.landmarks.load, step=5e-5, output=1e-3)
     orders = tv.orders_in_time(run.twist.sel(element="dmf"), run.crank_angle, [1.5])
     before, after = float(abs(orders[0, 0])), float(abs(orders[-1, 0]))
