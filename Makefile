@@ -29,10 +29,14 @@ demo: $(VENV)/.installed-run  ## install, then compare the shipped truck's dual 
 	$(BIN)/torsional report examples/truck_dmf.yaml --compare examples/truck_smf.yaml
 	@echo "Open it in a browser: $(CURDIR)/report.html"
 
+# Compiled beforehand, since processes that compile one function for different arguments at the same moment may be handed each
+# other's code by numba's cache.
 test: $(VENV)/.installed-test  ## install what the tests need and run them all
+	$(BIN)/torsional warmup --quiet
 	$(BIN)/python -m pytest -n $(JOBS)
 
 test-full: $(VENV)/.installed-test  ## the tests with the heavy checks
+	$(BIN)/torsional warmup --quiet
 	$(BIN)/python -m pytest -n $(JOBS) -m "full or not full"
 
 lint: $(VENV)/.installed-lint  ## ruff
