@@ -13,8 +13,8 @@ import pytest
 import torsional
 from torsional import ModelError
 from torsional.arguments import checked
-from torsional.model import RPM
 from torsional.studies import branches, region, subharmonic
+from torsional.units import RPM
 
 TRUCK = Path(__file__).parents[1] / "examples" / "truck_dmf.yaml"
 PUBLIC = [getattr(torsional, name) for name in torsional.__all__]

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from tests.numerics.packed import packed_levels, packed_profiles
 
 from torsional.laws.lugre import LOAD
-from torsional.numerics.packed import packed_levels, packed_profiles
 from torsional.numerics.stepping_data import Connected, Driven, Equations, Governed, rows_of
 
 

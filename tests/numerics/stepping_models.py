@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from tests.numerics.packed import packed_levels, packed_profiles
 
 from torsional.laws import Law
-from torsional.numerics.packed import packed_levels, packed_profiles
 from torsional.numerics.stepping_data import Connected, Driven, Equations, Governed, Rows, rows_of
 
 Hinge = tuple[float, float, float, float]  # gap, side, change, contact time

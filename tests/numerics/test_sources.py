@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
+from tests.numerics.packed import packed_levels, packed_profiles, periodic_profile
 
 from torsional.engine import SliderCrank
 from torsional.errors import ModelError
-from torsional.numerics.packed import packed_levels, packed_profiles, periodic_profile
 from torsional.numerics.sources import (
     crank_terms,
     frame_at,
     govern,
     level_at,
-    source_slopes,
     source_torques,
 )
 from torsional.numerics.stepping_data import Driven, Governed, rows_of
@@ -149,16 +148,6 @@ def test_torque_follows_time_angle_and_the_parts_own_motion() -> None:
         angle = 2.0 * frame + 2.0 * q[0] + 0.3
         assert out[0] == pytest.approx((50.0 * t + 8.0) * np.cos(1.5 * angle), abs=3e-8)
         assert out[1] == -29.5
-
-
-def test_slopes_are_the_derivative_by_the_rows_product() -> None:
-    q, extra = np.array([0.11, 5.0]), np.zeros(2)
-    high, low, slope = np.zeros(2), np.zeros(2), np.zeros(2)
-    source_slopes(outside(two_sources()), 1.0, 3.0, q, extra, slope)
-    for shift, out in ((1e-5, high), (-1e-5, low)):
-        source_torques(outside(two_sources()), 1.0, 3.0, q + shift, extra, out)
-    np.testing.assert_allclose(slope, (high - low) / np.array([2.0 * 2e-5, 2e-5]), rtol=1e-7)
-    assert slope[1] == 0.0 and abs(slope[0]) > 1.0
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.01])

@@ -93,3 +93,18 @@ def test_a_certificate_is_for_one_sided_springs_and_runs_that_go_on() -> None:
         certified(softer, push, transient(softer, push, 0.01, "rest"))
     with pytest.raises(ModelError, match="does not go on"):
         certified(softer, push, transient(softer, Excitation(("disc",), [0.0], 10.0, [[2.0]]), 0.01, "rest"))
+
+
+@pytest.mark.parametrize("method", ["explicit", "exact"])
+def test_a_certificate_is_for_runs_with_steps(flywheel: System, method: str) -> None:
+    with pytest.raises(ModelError, match=f"no steps to go on by.*{method}"):
+        certified(flywheel, driven(), run(flywheel, method))
+
+
+def test_a_certificate_of_steps_that_lose_the_motion_is_refused() -> None:
+    """Steps that settle under the run's torque do not under one beyond all numbers; none of them may pass unseen."""
+    system = spring(Hinges(100.0))
+    gentle, violent = (Excitation(("disc",), [0.0], 10.0, [[torque]]) for torque in (1.0, 1e308))
+    done = transient(system, gentle, 0.01, "rest")
+    with pytest.raises(ModelError, match=r"steps lose the motion|does not go on"):
+        certified(system, violent, done)

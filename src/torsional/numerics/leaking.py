@@ -44,7 +44,7 @@ def leak_towards(outside: Outside, k: int, frame: tuple[float, float], q: Array,
     if not turning < STANDING:
         return 0.0, 0.0
     first, last = int(leaks[RATIO_START, k]), int(leaks[RATIO_STOP, k])
-    ratio = profile_at(outside.profile, first, last, leaks[RATIO_PERIOD, k], angle)[0]
+    ratio = profile_at(outside.profile, first, last, leaks[RATIO_PERIOD, k], angle)
     return ratio - 1.0, leaks[LEAK_RATE, k] * (1.0 - turning / STANDING)
 
 

@@ -119,45 +119,36 @@ def frame_at(knots: Array, frame: int, t: float) -> tuple[float, float]:
 
 
 @uncounted()
-def profile_at(profile: Array, first: int, last: int, period: float, angle: float) -> tuple[float, float]:
-    """The profile of the pieces ``first`` to ``last`` and a period [turns], at an angle [rad], and its slope by it."""
+def profile_at(profile: Array, first: int, last: int, period: float, angle: float) -> float:
+    """The profile of the pieces ``first`` to ``last`` and a period [turns], at an angle [rad]."""
     count = last - first
     per_angle = count / (TURN * period)
     place = angle * per_angle
     place -= count * np.floor(place / count)
     if not place >= 0.0:  # the motion has grown beyond all numbers
-        return place, place
+        return place
     i = min(int(place), count - 1)
     x, c = place - i, profile[first + i]
-    slope = c[1] + x * (2.0 * c[2] + x * 3.0 * c[3])
-    return c[0] + x * (c[1] + x * (c[2] + x * c[3])), slope * per_angle
+    return c[0] + x * (c[1] + x * (c[2] + x * c[3]))
 
 
 @merged()
-def _source(outside: Outside, s: int, t: float, frame_angle: float, q: Array, extra: Array) -> tuple[float, float]:
-    """T_s and its slope by r_s·q."""
+def _source(outside: Outside, s: int, t: float, frame_angle: float, q: Array, extra: Array) -> float:
+    """T_s [Nm]."""
     place, multiple, feedback = outside.source_places, outside.sources[MULTIPLE, s], outside.sources[FEEDBACK, s]
     level = level_at(outside.level_start, outside.knots, place[LEVEL_OF, s], t) + extra[s]
     first, last = place[PROFILE_START, s], place[PROFILE_STOP, s]
     if first == last or level == 0.0:
-        return level, 0.0
+        return level
     angle = multiple * (frame_angle + feedback * row_product(outside.rows, s, q)) + outside.sources[PHASE, s]
-    value, slope = profile_at(outside.profile, first, last, outside.sources[PERIOD, s], angle)
-    return level * value, level * slope * multiple * feedback
+    return level * profile_at(outside.profile, first, last, outside.sources[PERIOD, s], angle)
 
 
 @uncounted()
 def source_torques(outside: Outside, t: float, frame_angle: float, q: Array, extra: Array, out: Array) -> None:
     """Torques T_s [Nm] (S,) along the rows r_s into ``out``; ``extra`` (S,) is what governors add to the levels."""
     for s in range(out.size):
-        out[s] = _source(outside, s, t, frame_angle, q, extra)[0]
-
-
-@uncounted()
-def source_slopes(outside: Outside, t: float, frame_angle: float, q: Array, extra: Array, out: Array) -> None:
-    """∂T_s/∂(r_s·q) [Nm/rad] (S,) into ``out``: zero but where the part's own motion moves the events."""
-    for s in range(out.size):
-        out[s] = _source(outside, s, t, frame_angle, q, extra)[1]
+        out[s] = _source(outside, s, t, frame_angle, q, extra)
 
 
 @uncounted()

@@ -10,11 +10,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from torsional import units
 from torsional.numerics.arrays import Array
 from torsional.plots import style
 
 MARKERS = "osD^vPX*<>"
 PATCH = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+_PER_RPM = units.RPM / (2.0 * np.pi)
+"""Frequency [Hz] of the first order per engine speed [rpm]."""
 
 Names = Mapping[str, Sequence[str]]
 
@@ -58,17 +61,17 @@ def plot_campbell(
 def _highest(result: xr.Dataset, rpm: Array) -> float:
     """The main order's frequency at the highest speed and some room, so that what it can meet is seen."""
     if result.order.size:
-        return 1.25 * float(result.order[0]) * float(rpm[-1]) / 60
+        return 1.25 * float(result.order[0]) * float(rpm[-1]) * _PER_RPM
     return 1.1 * float(result.frequency.isel(mode=slice(0, 6)).max())
 
 
 def _draw_order(axes: Axes, order: float, last: float, highest: float, dash: str) -> None:
-    end = min(last, 60 * highest / order)
-    axes.plot([0, end], [0, order * end / 60], color=style.INK, linestyle=dash, linewidth=1.3, gid="order")
+    end = min(last, highest / (order * _PER_RPM))
+    axes.plot([0, end], [0, order * end * _PER_RPM], color=style.INK, linestyle=dash, linewidth=1.3, gid="order")
     inside = 0.97 * end
     axes.annotate(
         f"order {order:g}",
-        (inside, order * inside / 60),
+        (inside, order * inside * _PER_RPM),
         fontsize=8,
         ha="right",
         va="bottom",

@@ -18,6 +18,7 @@ from torsional.results import dataset
 from torsional.solvers.checks import linear
 from torsional.solvers.modal import natural_frequencies
 from torsional.system import System
+from torsional.units import show
 
 
 @checked
@@ -185,7 +186,7 @@ def _refuse_singular(system: System, status: StatusArray, omega: Array, speed: A
     nearest = float(modes[np.argmin(np.abs(modes - at))])
     raise ModelError(
         "an undamped mode is met exactly, its response is infinite",
-        where=f"{speed[where[0]] * 30 / np.pi:.6g} rpm",
-        found=f"mode at {nearest / 2 / np.pi:.6g} Hz",
+        where=show(float(speed[where[0]]), "speed"),
+        found=f"mode at {show(nearest / (2 * np.pi), 'frequency')}",
         remedy="give some connection of this mode a damping or a loss_factor, or move the speed",
     )

@@ -10,10 +10,10 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.laws import Hinges, Law, Polynomial
-from torsional.model import RPM
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import TorqueHistory, engine_drive, steady_state, steady_sweep
 from torsional.system import System, assemble
+from torsional.units import RPM
 
 FINE = {"step": 0.005, "spectral_radius": 1.0}
 

@@ -18,7 +18,7 @@ from torsional.numerics.stepping_state import EXTERNAL, OWN, Q, V
 from torsional.numerics.stepping_state import State as Standing
 from torsional.solvers.transient.honesty import STIFF
 from torsional.solvers.transient.linear_parts import Parts, parts_of
-from torsional.solvers.transient.marching import Accuracy, marched
+from torsional.solvers.transient.marching import COMPLETE, Accuracy, marched
 from torsional.solvers.transient.problem import Drives, Problem
 from torsional.solvers.transient.resuming import resumed
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -58,8 +58,14 @@ def certified(
 
     which is set up anew from matrices at every step, and has one solution (`torsional.numerics.complementarity_step`).
     Contact times are those under the guard.  Raises ModelError for parts that are neither linear nor one-sided
-    springs, for springs that soften, and for a run that does not go on under these drives.
+    springs, for springs that soften, for a run without steps or one that does not go on under these drives, and
+    where the steps lose the motion.
     """
+    if "end_step" not in run.attrs:
+        remedy = "give it a run of `transient` by implicit steps"
+        raise ModelError(
+            "the run has no steps to go on by", where="run", found=str(run.attrs.get("method")), remedy=remedy
+        )
     problem = Problem.of(system, drives, speed, hold=hold)
     accuracy = Accuracy(float(run.attrs["end_step"]), run.attrs["method"], float(run.attrs["spectral_radius"]))
     begun = starting(run, problem.system, problem.acting, problem.hold, problem.start_speed)
@@ -70,12 +76,13 @@ def certified(
     parts = _guarded(problem, accuracy.step)
     worst, most, changes = 0.0, 0, 0
     for _ in range(steps):
-        after = marched(problem, state, 1, accuracy).end
-        if after.standing is None:
-            break
-        told, were, are = _step(parts, state.standing, after.standing, accuracy)
+        gone = marched(problem, state, 1, accuracy)
+        before, after = state.standing, gone.end.standing
+        if gone.status != COMPLETE or before is None or after is None:
+            raise ModelError("the steps lose the motion", where=f"time {gone.end.time:.6g} s", found=gone.status)
+        told, were, are = _step(parts, before, after, accuracy)
         worst, most, changes = max(worst, told), max(most, int(are.sum())), changes + int((were != are).sum())
-        state = after
+        state = gone.end
     return Certificate(worst, most, changes, steps)
 
 

@@ -23,6 +23,7 @@ from torsional.solvers.transient.resuming import resumable, resumed
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.solvers.transient.starts import MotionState, starting
 from torsional.system import System
+from torsional.units import show
 
 Progress = Callable[[float, float, float], None]
 """Called with the simulated time [s], the end [s] and how many seconds are simulated in one of the clock."""
@@ -116,7 +117,7 @@ def _switching(problem: Problem) -> str:
     masses, (low, high) = problem.system.masses, problem.speed.range
     pairs = zip(masses.names, masses.switches, strict=True)
     names = [name for name, switch in pairs if switch is not None and switch.above(low) != switch.above(high)]
-    kept_at = f"what they are at {problem.start_speed * 30 / np.pi:.5g} rpm"
+    kept_at = f"what they are at {show(problem.start_speed, 'speed')}"
     return f"the inertias of {', '.join(names)} stay {kept_at}, though the speed passes their switch" if names else ""
 
 

@@ -85,14 +85,14 @@ def driven(model: Model, rpm: float, share: float) -> Driven:
 
 def looped(model: Model, rpm: float, swing: float, middle: float = 0.0) -> Loop:
     """The absorber's loop at the pace of the firing order."""
-    frequency = main_order(model) * rpm / 60.0
+    frequency = main_order(model) * rpm * RPM / (2.0 * np.pi)
     loops = model_hysteresis(model, rpm * RPM, swing, rate=4 * swing * frequency, centre=middle)
     return Loop.of(loops, swing, frequency)
 
 
 def long_looped(rpm: float, swing: float, middle: float) -> Loop:
     """The loop of long arcs at the pace of the second order, that of four cylinders."""
-    frequency = 2.0 * rpm / 60.0
+    frequency = 2.0 * rpm * RPM / (2.0 * np.pi)
     loops = hysteresis(long_arcs(), "primary", "secondary", rpm * RPM, swing, rate=4 * swing * frequency, centre=middle)
     return Loop.of(loops, swing, frequency)
 
