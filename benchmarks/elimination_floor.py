@@ -14,10 +14,10 @@ import chain15
 import numpy as np
 from ledger import Floor, Machine
 
-from torsional.numerics import elimination_lanes
-from torsional.numerics.elimination import EliminationPlan
-from torsional.numerics.elimination_route import build_route
-from torsional.numerics.lanes import Rows
+from torsional.numerics.elimination import steps
+from torsional.numerics.elimination.lanes import Rows
+from torsional.numerics.elimination.plan import EliminationPlan
+from torsional.numerics.elimination.route import build_route
 
 
 class Counting:
@@ -34,7 +34,7 @@ def counted(program: np.ndarray) -> Counter[str]:
     """Instructions on one lane."""
     builder = Counting()
     for op, *offsets in program.tolist():
-        elimination_lanes._FORMULAS[op](Rows(builder, None), *offsets)
+        steps._FORMULAS[op](Rows(builder, None), *offsets)
     return builder.counts
 
 

@@ -15,7 +15,7 @@ import ours
 import peers
 from ledger import Floor, Machine
 
-from torsional.numerics.jacobi import graded_rows
+from torsional.numerics.modes.jacobi import graded_rows
 
 
 def replay(inertia: np.ndarray, stiffness: np.ndarray) -> tuple[int, int, int]:

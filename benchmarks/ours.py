@@ -48,7 +48,7 @@ def public_response() -> Callable[[], tuple[np.ndarray, np.ndarray]]:
 
 def kernel_response() -> Callable[[], tuple[np.ndarray]]:
     """The angles alone, by the elimination's own call: arrays in and out, the plan made beforehand."""
-    from torsional.numerics.elimination import EliminationPlan
+    from torsional.numerics.elimination.plan import EliminationPlan
 
     nodes, difference = chain15.INERTIA.size, chain15.matrices().difference
     grounded = np.flatnonzero(chain15.GROUND_DAMPING)
@@ -78,7 +78,7 @@ def response_floor(nodes: int = 15) -> Floor:
 
 def modes(inertia: np.ndarray, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues and vectors of many designs by one call of the kernel."""
-    from torsional.numerics.modal_kernel import modes
+    from torsional.numerics.modes.undamped import modes
 
     difference = chain15.matrices().difference
     omega, shapes = modes(difference, stiffness, np.eye(inertia.shape[1]), inertia)

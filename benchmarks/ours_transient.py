@@ -61,10 +61,10 @@ def told_of_response(found) -> np.ndarray:
 
 def march(step: float, span: float, sampling: float, flywheel: Flywheel = dmf_lcp.RUN_UP) -> Callable[[], object]:
     """The steps alone, with their energies; what is made once of the arrays is made before."""
-    from torsional.numerics.alpha_method import AlphaMethod
-    from torsional.numerics.stepping import begin
-    from torsional.numerics.stepping import march as marched
-    from torsional.numerics.stepping_plan import prepare
+    from torsional.numerics.stepping.alpha_method import AlphaMethod
+    from torsional.numerics.stepping.marching import begin
+    from torsional.numerics.stepping.marching import march as marched
+    from torsional.numerics.stepping.plan import prepare
 
     plan = prepare(flywheel.equations())
     start = begin(plan, np.zeros(NODES), np.zeros(NODES))
@@ -80,7 +80,7 @@ def told_of_march(found) -> np.ndarray:
 
 def explicit(tolerance: float, span: float, sampling: float) -> Callable[[], object]:
     """The explicit integrator of the same arrays."""
-    from torsional.numerics.explicit_march import explicit_march
+    from torsional.numerics.explicit.march import explicit_march
 
     arrays, times, rest = dmf_lcp.equations(), np.linspace(0.0, span, round(span / sampling) + 1), np.zeros(NODES)
     return lambda: explicit_march(arrays, times, rest, rest, tolerance=tolerance)
@@ -98,7 +98,7 @@ def floor(step: float, span: float) -> Floor:
     nodes, 12 a connection; 4 a hinge for its test; 6 a node.  A factor: 2 an update, 1 a coupling, 4 a connection for
     the matrix.  Once a step: 25 a node for the prediction and the energies, 8 a connection for what dampers lose.
     """
-    from torsional.numerics.sparse_factor import tape_of
+    from torsional.numerics.linear.sparse_factor import tape_of
 
     pairs = {(a, b) for a, b, *_ in dmf_lcp.LINEAR} | set(zip(dmf_lcp.PLUS, dmf_lcp.MINUS, strict=True))
     joined = {frozenset((int(a), int(b))) for a, b in pairs}

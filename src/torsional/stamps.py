@@ -97,7 +97,7 @@ class Swing:
     """The path of a pendulum, whose linear stamps are a mass m c² and a centrifugal stiffness m c² n² beside.
 
     ``mass`` m [kg], ``distance`` c [m] from the axis, ``curvature_radius`` ρ0 [m] at rest, ``flattening`` λ of the path
-    (see `torsional.numerics.pendulum_path`), ``place`` [rad] on the node ``carrier`` from the top.
+    (see `torsional.numerics.motion.pendulum_path`), ``place`` [rad] on the node ``carrier`` from the top.
     """
 
     carrier: str

@@ -13,7 +13,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.null_space import CANCELLED, Elimination, Loop, eliminate, null_vectors, transformed
+from torsional.numerics.linear.null_space import CANCELLED, Elimination, Loop, eliminate, null_vectors, transformed
 from torsional.stamps import GROUND, Connection, Constraint, Mass, Stamp
 
 

@@ -17,7 +17,7 @@ from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.notebook import html_table
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.null_space import transformed
+from torsional.numerics.linear.null_space import transformed
 from torsional.powertrain import Powertrain
 from torsional.stamps import Connection, Mass, NormalLoad, SpeedSwitch, Swing
 from torsional.structure import weight_rows

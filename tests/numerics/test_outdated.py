@@ -12,12 +12,12 @@ def kept(package: Path) -> list[str]:
 
 
 def test_code_is_thrown_away_with_any_source_it_may_come_from(tmp_path: Path) -> None:
-    for folder in ("numerics", "laws"):
+    for folder in ("numerics/stepping", "laws"):  # at any depth
         (tmp_path / folder / "__pycache__").mkdir(parents=True)
         (tmp_path / folder / "callee.py").write_text("one")
 
     def compiled() -> None:
-        for folder in ("numerics", "laws"):
+        for folder in ("numerics/stepping", "laws"):
             (tmp_path / folder / "__pycache__" / "caller.f-1.py311.nbi").write_text("old")
             (tmp_path / folder / "__pycache__" / "caller.f-1.py311.1.nbc").write_text("old")
 

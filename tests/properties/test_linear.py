@@ -19,7 +19,7 @@ from torsional.absorbers import (
 from torsional.components import Component, Coupling, GearPair, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.laws import Hinges
-from torsional.numerics.modal_kernel import count_below
+from torsional.numerics.modes.undamped import count_below
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
 from torsional.solvers.harmonic import harmonic_response

@@ -16,10 +16,10 @@ from torsional.components import Component, Coupling, GearPair, Inertia, Planeta
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, Jenkins, Law, LuGre, Table, hinge_rows
-from torsional.numerics.alpha_method import AlphaMethod
-from torsional.numerics.complementarity_step import OneSided
-from torsional.numerics.exact_contacts import ExactContacts
-from torsional.numerics.stepping import Entry, Settings, Status, begin, march
+from torsional.numerics.contacts.exact import ExactContacts
+from torsional.numerics.contacts.step import OneSided
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Entry, Settings, Status, begin, march
 from torsional.powertrain import Powertrain
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.transient import MotionState, TorqueHistory, transient

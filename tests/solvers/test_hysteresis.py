@@ -12,7 +12,7 @@ from torsional.components.shaft import Damper
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, Jenkins, Law, LuGre
 from torsional.numerics.arrays import Array
-from torsional.numerics.loops import loss_per_cycle, secant_stiffness
+from torsional.numerics.quasi_static.loops import loss_per_cycle, secant_stiffness
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis, on_bench
 from torsional.solvers.hysteresis.parts import parts_of

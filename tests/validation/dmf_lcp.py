@@ -18,7 +18,7 @@ import numba
 import numpy as np
 
 if TYPE_CHECKING:
-    from torsional.numerics.stepping_data import Equations, Rows
+    from torsional.numerics.motion.data import Equations, Rows
 
 RPM = np.pi / 30.0
 PRIMARY, SECONDARY, GEARBOX, VEHICLE, FIRST_SHOE = 0, 1, 2, 3, 4
@@ -143,7 +143,7 @@ class Flywheel:
 
     def equations(self, pieces: int = 1024) -> Equations:
         """The same as arrays of time stepping; the sine is made of ``pieces`` cubics, (2π/pieces)⁴/384 off."""
-        from torsional.numerics.stepping_data import Equations, rows_of
+        from torsional.numerics.motion.data import Equations, rows_of
 
         return Equations(
             coordinates=NODES,
@@ -179,7 +179,7 @@ def observed(y: np.ndarray) -> np.ndarray:
 
 
 def _rows(pairs: list[tuple[int, int]]) -> Rows:
-    from torsional.numerics.stepping_data import rows_of
+    from torsional.numerics.motion.data import rows_of
 
     table = np.zeros((len(pairs), NODES))
     for row, (a, b) in zip(table, pairs, strict=True):
@@ -190,7 +190,7 @@ def _rows(pairs: list[tuple[int, int]]) -> Rows:
 def _connected() -> Any:
     """One connection for each pair of nodes; +λ on plus is the hinge −max(0, k (−(φ + g0) − τ φ̇)) of φ = θ_plus −
     θ_minus, and where the pair stands the other way round the hinge of the other side."""
-    from torsional.numerics.stepping_data import Connected
+    from torsional.numerics.motion.data import Connected
 
     linear = {(a, b): (k, c) for a, b, k, c in LINEAR}
     hinges: dict[tuple[int, int], list[tuple[float, float, float]]] = {pair: [] for pair in linear}
@@ -231,7 +231,7 @@ def _connected() -> Any:
 
 def _driven(mean: float, pieces: int) -> Any:
     """The sine about its mean as a profile on the primary, the load as a level at the vehicle."""
-    from torsional.numerics.stepping_data import Driven, rows_of
+    from torsional.numerics.motion.data import Driven, rows_of
 
     rows = np.zeros((2, NODES))
     rows[0, PRIMARY], rows[1, VEHICLE] = 1.0, 1.0
@@ -266,7 +266,7 @@ def _sine(mean: float, pieces: int) -> np.ndarray:
 
 
 def _ungoverned() -> Any:
-    from torsional.numerics.stepping_data import Governed, rows_of
+    from torsional.numerics.motion.data import Governed, rows_of
 
     nobody, nothing, edge = rows_of(np.zeros((0, NODES))), np.zeros(0), np.zeros(1, dtype=np.int64)
     places = np.zeros(0, dtype=np.int64)

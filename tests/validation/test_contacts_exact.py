@@ -9,20 +9,20 @@ import numba
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.numerics.stepping_arrays import Connection, equations
+from tests.numerics.stepping.stepping_arrays import Connection, equations
 from tests.validation import dmf_lcp
 
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Law, Told, plain
-from torsional.numerics.alpha_method import AlphaMethod
-from torsional.numerics.complementarity import violation
-from torsional.numerics.complementarity_step import OneSided, Step, step_problem
-from torsional.numerics.exact_contacts import ExactContacts
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.piecewise_basis import StageBases
-from torsional.numerics.piecewise_motion import PiecewiseMotion
-from torsional.numerics.stepping import begin, march
-from torsional.numerics.stepping_plan import prepare
+from torsional.numerics.contacts.complementarity import violation
+from torsional.numerics.contacts.exact import ExactContacts
+from torsional.numerics.contacts.step import OneSided, Step, step_problem
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.piecewise.basis import StageBases
+from torsional.numerics.piecewise.motion import PiecewiseMotion
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import begin, march
+from torsional.numerics.stepping.plan import prepare
 
 Array = np.ndarray
 

@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 from tests.validation import dmf_lcp
 from tests.validation.dmf_lcp import INERTIA, NODES, REFERENCE, RPM, observed
 
-from torsional.numerics.alpha_method import AlphaMethod
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping import Status, begin, march
-from torsional.numerics.stepping_data import Equations, Rows
-from torsional.numerics.stepping_plan import prepare
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.motion.data import Equations, Rows
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Status, begin, march
+from torsional.numerics.stepping.plan import prepare
 
 TABLE = np.array(REFERENCE)
 TIMES, FIGURES = TABLE[:, 0], TABLE[:, 1:]

@@ -11,9 +11,9 @@ import pytest
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.laws import Contacts, Coulomb, Jenkins, Karnopp, Law, LuGre
-from torsional.numerics.alpha_method import AlphaMethod
-from torsional.numerics.stepping import Status, begin, march
-from torsional.numerics.stepping_plan import prepare
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Status, begin, march
+from torsional.numerics.stepping.plan import prepare
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.drives import OrderTorques
 from torsional.solvers.transient.problem import Problem

@@ -11,7 +11,7 @@ from torsional.absorbers import CentrifugalPendulum
 from torsional.absorbers.pendulum import flattening, path_end
 from torsional.components import Inertia, Shaft
 from torsional.engine import Excitation
-from torsional.numerics.pendulum_path import pendulum_terms, weight_terms
+from torsional.numerics.motion.pendulum_path import pendulum_terms, weight_terms
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import MotionState, transient
 from torsional.system import System, assemble

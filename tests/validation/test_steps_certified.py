@@ -8,10 +8,10 @@ from scipy.integrate import simpson
 from tests.validation import dmf_lcp
 from tests.validation.test_contacts_exact import SPEED, flywheel, generalised_alpha, stepped
 
-from torsional.numerics.alpha_method import AlphaMethod
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping import Entry, March, Settings, begin, march
-from torsional.numerics.stepping_plan import prepare
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Entry, March, Settings, begin, march
+from torsional.numerics.stepping.plan import prepare
 
 REST = np.zeros(dmf_lcp.NODES)
 

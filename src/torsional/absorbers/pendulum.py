@@ -194,7 +194,7 @@ def squared_distance(path: Path, order: float, distance: float, arc: float) -> f
     >>> round(squared_distance("tautochrone", 3.0, 0.1, 0.005), 9) == round(0.1**2 - 3.0**2 * 0.005**2, 9)
     True
     """
-    from torsional.numerics.pendulum_path import path_at  # imported where used: it imports numba
+    from torsional.numerics.motion.pendulum_path import path_at  # imported where used: it imports numba
 
     x, y, *_ = path_at(distance / (1 + order**2), flattening(path, order), distance, arc)
     return float(x * x + y * y)

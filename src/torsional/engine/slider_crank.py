@@ -19,7 +19,7 @@ from torsional.engine.orders import (
     picked,
 )
 from torsional.errors import ModelError
-from torsional.numerics.crank_kinematics import piston_position, piston_ratios
+from torsional.numerics.motion.crank_kinematics import piston_position, piston_ratios
 
 
 @dataclass(frozen=True)

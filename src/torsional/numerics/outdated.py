@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 COMPILED = ("numerics", "laws", "studies/claims")
-"""Folders of the package with compiled functions."""
+"""Folders of the package with compiled functions, at any depth."""
 STAMP = "compiled_from"
 
 
@@ -24,13 +24,13 @@ def discard_outdated(package: Path, folders: Sequence[str] = COMPILED) -> int:
     """
     told = hashlib.sha256()
     for folder in folders:
-        for source in sorted((package / folder).glob("*.py")):
-            told.update(source.name.encode() + b"\0" + source.read_bytes())
+        for source in sorted((package / folder).rglob("*.py")):
+            told.update(str(source.relative_to(package)).encode() + b"\0" + source.read_bytes())
     stamp = package / folders[0] / "__pycache__" / STAMP
     with contextlib.suppress(OSError):
         if stamp.is_file() and stamp.read_text(encoding="ascii") == told.hexdigest():
             return 0
-        kept = [file for folder in folders for file in (package / folder / "__pycache__").glob("*.nb[ic]")]
+        kept = [file for folder in folders for file in (package / folder).rglob("*.nb[ic]")]
         for file in kept:
             file.unlink(missing_ok=True)
         stamp.parent.mkdir(exist_ok=True)

@@ -14,7 +14,7 @@ from torsional.errors import ModelError, nearest
 from torsional.laws import Law
 from torsional.notebook import operating_point_table
 from torsional.numerics.arrays import Array
-from torsional.numerics.null_space import null_vectors
+from torsional.numerics.linear.null_space import null_vectors
 from torsional.system import System
 
 ITERATIONS = 100

@@ -12,8 +12,8 @@ from torsional.arguments import checked
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray, StatusArray
-from torsional.numerics.elimination import EliminationPlan, Status
-from torsional.numerics.factor_products import factor_products
+from torsional.numerics.elimination.plan import EliminationPlan, Status
+from torsional.numerics.linear.factor_products import factor_products
 from torsional.results import dataset
 from torsional.solvers.checks import linear
 from torsional.solvers.modal import natural_frequencies

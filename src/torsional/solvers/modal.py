@@ -7,8 +7,8 @@ import xarray as xr
 
 from torsional.arguments import checked
 from torsional.numerics.arrays import Array
-from torsional.numerics.modal_kernel import Modes, modes
-from torsional.numerics.quadratic_eigen import damped_modes as quadratic_modes
+from torsional.numerics.modes.damped import damped_modes as quadratic_modes
+from torsional.numerics.modes.undamped import Modes, modes
 from torsional.results import dataset
 from torsional.solvers.checks import linear
 from torsional.system import System

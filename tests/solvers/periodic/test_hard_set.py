@@ -20,7 +20,7 @@ from tests.solvers.periodic.machines import (
 from tests.validation.periodic_reference import Cubic, Stages
 
 from torsional.errors import ModelError
-from torsional.numerics.continuation import Settings
+from torsional.numerics.continuation.following import Settings
 
 SHORT = Settings(first_step=0.01, largest_step=0.1, largest_angle=0.35, most_points=200)
 PLAY = Stages((-1.0, 1.0), (1.0, 0.0, 1.0))

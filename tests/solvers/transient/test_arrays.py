@@ -10,8 +10,8 @@ import pytest
 from torsional.components import Coupling, Damper, GearPair, Inertia, Shaft
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, LuGre, Polynomial, Stribeck, hinge_rows
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping_data import Connected, Rows
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.motion.data import Connected, Rows
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.arrays import connected, masses, with_viscous_losses
 from torsional.solvers.transient.problem import Problem

@@ -8,8 +8,8 @@ import xarray as xr
 
 from torsional.files import load_model
 from torsional.model import Model
-from torsional.numerics.stepping import begin
-from torsional.numerics.stepping_state import State as Standing
+from torsional.numerics.stepping.marching import begin
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient import batches, engine_drive, steady_map, steady_sweep
 from torsional.solvers.transient.batches import Asked, Batch, Row
 from torsional.system import assemble

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from torsional.errors import ModelError
-from torsional.numerics.stroboscopic import repeats
+from torsional.numerics.stepping.stroboscopic import repeats
 from torsional.solvers.transient.character import dimension, named
 from torsional.solvers.transient.orders import orders_in_time, windowed_rms
 from torsional.solvers.transient.speed_profile import SpeedProfile

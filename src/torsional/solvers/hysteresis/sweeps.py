@@ -14,9 +14,15 @@ from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.numerics.loops import half_swing, harmonic_stiffness, loss_factor, loss_per_cycle, secant_stiffness
-from torsional.numerics.quasi_static import march
-from torsional.numerics.quasi_static_torques import work_for
+from torsional.numerics.quasi_static.loops import (
+    half_swing,
+    harmonic_stiffness,
+    loss_factor,
+    loss_per_cycle,
+    secant_stiffness,
+)
+from torsional.numerics.quasi_static.march import march
+from torsional.numerics.quasi_static.torques import work_for
 from torsional.results import dataset
 from torsional.solvers.hysteresis.bench import Bench, on_bench
 from torsional.solvers.hysteresis.parts import parts_of
@@ -64,7 +70,7 @@ def hysteresis(
     Gives over ``speed``, ``sweep`` and ``cycle`` ("first", "closed"): ``drive_torque`` at ``turned`` over ``sample``,
     ``angle`` of nodes relative to ``held``, ``twist``, ``torque`` and ``normal_load`` of elements; and of the closed
     loop its ``loss``, ``stiffness`` (chord between the turning points), ``harmonic_stiffness`` and ``loss_factor`` as
-    `torsional.numerics.loops` defines them, the loss of each element, and which rubbing elements slide.
+    `torsional.numerics.quasi_static.loops` defines them, the loss of each element, and which rubbing elements slide.
     Raises ModelError for nodes that turn at different speeds or with nothing between, sweeps and rates that are not
     positive, and where no balance is found.
 

@@ -14,7 +14,7 @@ from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import FOLD, Point
+from torsional.numerics.continuation.following import FOLD, Point
 from torsional.results import Variable, dataset, of_model
 from torsional.solvers.periodic.branches import MAIN, Explorer
 from torsional.solvers.periodic.curves import DOUBLING, bifurcation_curve

@@ -10,7 +10,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import End, Point, Settings, Trace, both_ways, followed
+from torsional.numerics.continuation.following import End, Point, Settings, Trace, both_ways, followed
 from torsional.solvers.periodic.problem import JOINED, HarmonicProblem, Setting, WatchedProblem
 from torsional.solvers.periodic.stability import with_hidden_events
 from torsional.solvers.periodic.start import first_solution

@@ -16,8 +16,8 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS
-from torsional.numerics.continuation import FOLD, Corrected, Point, Settings, Trace, both_ways
+from torsional.numerics.balance.equations import ENOUGH, MOST_ITERATIONS
+from torsional.numerics.continuation.following import FOLD, Corrected, Point, Settings, Trace, both_ways
 from torsional.solvers.periodic.problem import HarmonicProblem
 
 CURVE = Settings(first_step=0.02, largest_step=0.1, largest_angle=0.3, most_points=600)

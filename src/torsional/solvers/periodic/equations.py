@@ -10,10 +10,10 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.laws import Law, packed
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance_data import Balance
-from torsional.numerics.hinge_spectrum import scan_table
-from torsional.numerics.null_space import null_vectors
-from torsional.numerics.pole_residues import PoleResidues, pole_residues
+from torsional.numerics.balance.data import Balance
+from torsional.numerics.balance.hinge_spectrum import scan_table
+from torsional.numerics.linear.null_space import null_vectors
+from torsional.numerics.modes.pole_residues import PoleResidues, pole_residues
 from torsional.solvers.periodic.load import Load
 from torsional.system import System
 

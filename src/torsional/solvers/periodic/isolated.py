@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import Settings, followed
-from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.numerics.continuation.following import Settings, followed
+from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.solvers.periodic.branches import DOUBLED, MAIN, Branch, Explorer
 from torsional.solvers.periodic.curves import DOUBLING
 from torsional.solvers.periodic.detours import detours

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance import corrected, equations, half_order_block
-from torsional.numerics.balance_data import Balance, harmonic_parts, static_part
-from torsional.numerics.continuation import Corrected
+from torsional.numerics.balance.data import Balance, harmonic_parts, static_part
+from torsional.numerics.balance.equations import corrected, equations, half_order_block
+from torsional.numerics.continuation.following import Corrected
 from torsional.solvers.periodic.equations import Split, balance
 from torsional.solvers.periodic.load import Load
 

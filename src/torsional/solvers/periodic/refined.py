@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import Point
+from torsional.numerics.continuation.following import Point
 from torsional.solvers.periodic.branches import Branch
 
 REACH = 0.5

@@ -15,7 +15,7 @@ from torsional.engine import Excitation
 from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import Settings
+from torsional.numerics.continuation.following import Settings
 from torsional.solvers.periodic.branches import TRACING, Explorer
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.isolated import seek_doubled, seek_isolated

@@ -8,13 +8,13 @@ from functools import lru_cache
 import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
-from torsional.numerics.balance_forces import forces_along
-from torsional.numerics.continuation import Point
-from torsional.numerics.floquet import multipliers, ordered
-from torsional.numerics.floquet_remembering import monodromy_remembering
-from torsional.numerics.floquet_sampled import monodromy_sampled
-from torsional.numerics.piecewise_basis import Coordinates, StageBases, coordinates
-from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.numerics.balance.forces import forces_along
+from torsional.numerics.continuation.following import Point
+from torsional.numerics.floquet.multipliers import multipliers, ordered
+from torsional.numerics.floquet.remembering import monodromy_remembering
+from torsional.numerics.floquet.sampled import monodromy_sampled
+from torsional.numerics.piecewise.basis import Coordinates, StageBases, coordinates
+from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
 from torsional.solvers.periodic.states import driving

@@ -15,7 +15,7 @@ import numpy as np
 from torsional.errors import ModelError
 from torsional.laws import HingeRows, Hinges
 from torsional.numerics.arrays import Array
-from torsional.numerics.continuation import Settings, followed
+from torsional.numerics.continuation.following import Settings, followed
 from torsional.solvers.equilibrium import equilibrium, settled
 from torsional.solvers.periodic.detours import between, over_amplitude, parts
 from torsional.solvers.periodic.load import Load

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance_forces import forces_along
-from torsional.numerics.elimination import EliminationPlan
+from torsional.numerics.balance.forces import forces_along
+from torsional.numerics.elimination.plan import EliminationPlan
 from torsional.solvers.harmonic import element_torques, node_angles
 from torsional.solvers.periodic.problem import HarmonicProblem
 

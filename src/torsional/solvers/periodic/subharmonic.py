@@ -15,7 +15,7 @@ from torsional.engine.orders import HIGHEST_ORDER
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.balance import corrected_at
+from torsional.numerics.balance.equations import corrected_at
 from torsional.results import dataset, of_model
 from torsional.solvers.periodic.boundary import curve_variables, region_curves
 from torsional.solvers.periodic.branches import MAIN, Branch, Explorer

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.balance import ENOUGH, MOST_ITERATIONS, doubling_test
-from torsional.numerics.continuation import Corrected
+from torsional.numerics.balance.equations import ENOUGH, MOST_ITERATIONS, doubling_test
+from torsional.numerics.continuation.following import Corrected
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.problem import HarmonicProblem, Setting
 from torsional.system import System

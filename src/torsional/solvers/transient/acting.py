@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.stepping_data import LEAK, Driven, Governed, rows_of
+from torsional.numerics.motion.data import LEAK, Driven, Governed, rows_of
 from torsional.solvers.transient.drags import Drag
 from torsional.solvers.transient.profiles import Level, Profile
 from torsional.solvers.transient.speed_profile import SpeedProfile

@@ -11,7 +11,7 @@ import numpy as np
 from torsional.errors import ModelError, nearest
 from torsional.laws import Contacts, HingeRows, Law, hinge_rows
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.stepping_data import Connected, Driven, Rows, rows_of
+from torsional.numerics.motion.data import Connected, Driven, Rows, rows_of
 from torsional.stamps import NormalLoad
 from torsional.system import Connections, System
 from torsional.units import GRAVITY

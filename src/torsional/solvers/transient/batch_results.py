@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.stepping_batch import LEFT_OVER, PERIODS
-from torsional.numerics.stepping_state import MADE
+from torsional.numerics.stepping.batch import LEFT_OVER, PERIODS
+from torsional.numerics.stepping.state import MADE
 from torsional.results import dataset
 from torsional.solvers.transient.batches import Row
 from torsional.solvers.transient.character import named

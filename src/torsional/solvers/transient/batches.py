@@ -14,8 +14,8 @@ import xarray as xr
 from torsional.engine import Excitation
 from torsional.engine.orders import HIGHEST_ORDER
 from torsional.numerics.arrays import Array
-from torsional.numerics.stepping import begin, blank_records, typed
-from torsional.numerics.stepping_batch import (
+from torsional.numerics.motion.tables import Outside, tables_of
+from torsional.numerics.stepping.batch import (
     BLOCK,
     LOOKED_AT,
     TURNED,
@@ -26,11 +26,11 @@ from torsional.numerics.stepping_batch import (
     Told,
     settled_points,
 )
-from torsional.numerics.stepping_march import new_work
-from torsional.numerics.stepping_plan import Plan, matrix_of
-from torsional.numerics.stepping_state import MEMORY, Entry, Q, V
-from torsional.numerics.stepping_state import State as Standing
-from torsional.numerics.stepping_tables import Outside, tables_of
+from torsional.numerics.stepping.loop import new_work
+from torsional.numerics.stepping.marching import begin, blank_records, typed
+from torsional.numerics.stepping.plan import Plan, matrix_of
+from torsional.numerics.stepping.state import MEMORY, Entry, Q, V
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.acting import assembled
 from torsional.solvers.transient.marching import Accuracy
 from torsional.solvers.transient.problem import Levels, Problem

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from torsional.arguments import checked
 from torsional.errors import ModelError
-from torsional.numerics.complementarity import violation
-from torsional.numerics.complementarity_step import OneSided, Step, step_problem
-from torsional.numerics.stepping import Count
-from torsional.numerics.stepping_plan import PACE
-from torsional.numerics.stepping_state import EXTERNAL, OWN, Q, V
-from torsional.numerics.stepping_state import State as Standing
+from torsional.numerics.contacts.complementarity import violation
+from torsional.numerics.contacts.step import OneSided, Step, step_problem
+from torsional.numerics.stepping.marching import Count
+from torsional.numerics.stepping.plan import PACE
+from torsional.numerics.stepping.state import EXTERNAL, OWN, Q, V
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.honesty import STIFF
 from torsional.solvers.transient.linear_parts import Parts, parts_of
 from torsional.solvers.transient.marching import COMPLETE, Accuracy, marched
@@ -56,7 +56,7 @@ def certified(
 
         0 ≤ λ⁺ ⟂ p + M λ⁺ ≥ 0,
 
-    which is set up anew from matrices at every step, and has one solution (`torsional.numerics.complementarity_step`).
+    which is set up anew from matrices at every step, and has one solution (`torsional.numerics.contacts.step`).
     Contact times are those under the guard.  Raises ModelError for parts that are neither linear nor one-sided
     springs, for springs that soften, for a run without steps or one that does not go on under these drives, and
     where the steps lose the motion.

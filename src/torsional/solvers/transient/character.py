@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.stroboscopic import gap_between
+from torsional.numerics.stepping.stroboscopic import gap_between
 
 REGULAR = 0.01
 """Largest exponent a period that counts as none; what 300 periods of a quasi-periodic motion leave is below it."""

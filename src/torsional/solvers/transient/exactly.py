@@ -10,7 +10,7 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.exact_contacts import ExactContacts
+from torsional.numerics.contacts.exact import ExactContacts
 from torsional.solvers.transient.acting import Source
 from torsional.solvers.transient.linear_parts import parts_of
 from torsional.solvers.transient.problem import Problem

@@ -8,8 +8,8 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.complementarity_step import OneSided
-from torsional.numerics.stepping_plan import dense, mass_matrix
+from torsional.numerics.contacts.step import OneSided
+from torsional.numerics.stepping.plan import dense, mass_matrix
 from torsional.solvers.transient.problem import Problem
 
 

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
-from torsional.numerics.element_torques import element_torques
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping import Count, Entry, Settings, Status, begin, march
-from torsional.numerics.stepping_state import State as Standing
+from torsional.numerics.explicit.element_torques import element_torques
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Count, Entry, Settings, Status, begin, march
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.exactly import exact_motion
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState

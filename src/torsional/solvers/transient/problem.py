@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.stepping_data import Equations, rows_of
-from torsional.numerics.stepping_plan import Plan, prepare
+from torsional.numerics.motion.data import Equations, rows_of
+from torsional.numerics.stepping.plan import Plan, prepare
 from torsional.solvers.transient.acting import Acting, Drive, assembled, row_of
 from torsional.solvers.transient.arrays import connected, masses, with_pendulums
 from torsional.solvers.transient.drags import dragged

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.stepping import begin
-from torsional.numerics.stepping_state import State as Standing
+from torsional.numerics.stepping.marching import begin
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.marching import Accuracy
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState

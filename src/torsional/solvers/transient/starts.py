@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from torsional.engine import SliderCrank
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.null_space import null_vectors
-from torsional.numerics.stepping_state import State as Standing
+from torsional.numerics.linear.null_space import null_vectors
+from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.equilibrium import settled
 from torsional.solvers.transient.acting import Acting, Crank, Source, row_of
 from torsional.solvers.transient.profiles import Profile, through

@@ -9,8 +9,8 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.stepping_batch import BLOCK, LITTLE, VIEWS
-from torsional.numerics.stroboscopic import repeats
+from torsional.numerics.stepping.batch import BLOCK, LITTLE, VIEWS
+from torsional.numerics.stepping.stroboscopic import repeats
 from torsional.solvers.transient.character import Character, dimension, drifts, named, restless
 from torsional.solvers.transient.marching import Accuracy, Marched, marched
 from torsional.solvers.transient.problem import Problem

@@ -13,7 +13,7 @@ from torsional.engine import Excitation
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.numerics.piecewise_motion import PiecewiseMotion, Trajectory
+from torsional.numerics.piecewise.motion import PiecewiseMotion, Trajectory
 from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.periodic.equations import Split

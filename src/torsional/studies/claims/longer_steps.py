@@ -9,10 +9,10 @@ import numpy as np
 
 from torsional.absorbers.straight_spring import StraightSprings
 from torsional.model import Model
-from torsional.numerics.alpha_method import AlphaMethod
 from torsional.numerics.arrays import Array
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping import Settings, begin, march
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.stepping.alpha_method import AlphaMethod
+from torsional.numerics.stepping.marching import Settings, begin, march
 from torsional.solvers.transient.acting import row_of
 from torsional.studies.claims.answers import floats, main_order, sweep
 from torsional.studies.claims.base import Figure, Finding, claim

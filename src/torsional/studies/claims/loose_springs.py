@@ -17,8 +17,8 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.numerics.explicit_march import explicit_march
-from torsional.numerics.stepping_plan import (
+from torsional.numerics.explicit.march import explicit_march
+from torsional.numerics.stepping.plan import (
     CHANGE,
     CONTACT_TIME,
     GAP,

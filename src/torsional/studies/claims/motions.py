@@ -7,7 +7,7 @@ import numpy as np
 from torsional.engine.orders import HIGHEST_ORDER
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.solvers.periodic.branches import Branch, Explorer
 from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.machine import engine_load, engine_torque_load

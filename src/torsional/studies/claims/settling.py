@@ -11,7 +11,7 @@ from torsional.engine import Excitation
 from torsional.engine.orders import HIGHEST_ORDER
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.numerics.piecewise_motion import PiecewiseMotion
+from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.solvers.transient import MotionState, OrderTorques, TorqueHistory, engine_drive, steady_state, transient
 from torsional.system import System, assemble
 

@@ -1,0 +1,1 @@
+"""One-sided springs as a complementarity problem, and their exact motion."""

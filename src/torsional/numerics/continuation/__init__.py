@@ -1,0 +1,1 @@
+"""Curves F(x, p) = 0: following them, their events and their ends."""

@@ -1,0 +1,1 @@
+"""Linear response by elimination, one topology for any number of designs and frequencies."""

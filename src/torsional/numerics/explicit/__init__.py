@@ -1,0 +1,1 @@
+"""Explicit integration of the same equations, for cross-checks."""

@@ -1,0 +1,1 @@
+"""Growth of small deviations from a periodic motion."""

@@ -1,0 +1,1 @@
+"""Linear equations and their relatives: small and sparse systems, null spaces, exponentials."""

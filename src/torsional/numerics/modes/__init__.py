@@ -1,0 +1,1 @@
+"""Undamped and damped modes, and receptances from them."""

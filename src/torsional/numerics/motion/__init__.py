@@ -1,0 +1,1 @@
+"""The equations of motion as arrays, and what drives them."""

@@ -1,0 +1,1 @@
+"""Exact motion of piecewise-linear systems under harmonic loads."""

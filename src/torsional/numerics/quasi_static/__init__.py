@@ -1,0 +1,1 @@
+"""Torques of slow motion, and the loops that they run through."""

@@ -1,0 +1,1 @@
+"""Implicit time steps over the equations of motion."""
