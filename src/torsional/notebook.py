@@ -24,7 +24,7 @@ def html_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]
 
 def components_table(title: str, components: Mapping[str, object]) -> str:
     """Components by name, with their kind and values."""
-    rows = [[name, type(part).__name__, told_fields(part)] for name, part in components.items()]
+    rows = [[name, type(part).__name__, _told_fields(part)] for name, part in components.items()]
     return html_table(title, ["name", "kind", "values"], rows)
 
 
@@ -45,7 +45,7 @@ def operating_point_table(point: Any) -> str:
     return html_table("Operating point", ["connection", "mean torque", "mean twist", "tangent", "stage"], rows)
 
 
-def told_fields(part: object) -> str:
+def _told_fields(part: object) -> str:
     """The fields of a dataclass that differ from their defaults, with units where the nomenclature has the name."""
     if not dataclasses.is_dataclass(part):
         return ""

@@ -42,7 +42,7 @@ def run(request: Request, gear: str, torque: str, expand: bool) -> None:
         return
     model = request.model
     engaged, mean = inputs.one_gear(model, gear), inputs.torque(model, torque)
-    document = checked_model(model, engaged, mean)
+    document = _checked_model(model, engaged, mean)
     head = told_settings(request, gear=engaged, torque=amount(mean, "torque"))
     deliver(Answer("check", _tables(document, engaged, mean), {**head, **document}), request)
     if not (request.quiet or request.as_json):
@@ -50,11 +50,11 @@ def run(request: Request, gear: str, torque: str, expand: bool) -> None:
             complain(warning, kind="warning")
 
 
-def checked_model(model: Model, gear: str, torque: float) -> Document:
+def _checked_model(model: Model, gear: str, torque: float) -> Document:
     """Everything that is told of a model in one gear under a mean torque [Nm]."""
     system, point = at_operating_point(model, torque, gear)
-    springs, elastic = list(standing(model, point)), list(first_modes(model, system, inputs.speed(model, "")))
-    warnings = [*warnings_of(model), *doubts(elastic, torque, springs)]
+    springs, elastic = list(standing(model, point)), list(_first_modes(model, system, inputs.speed(model, "")))
+    warnings = [*warnings_of(model), *_doubts(elastic, torque, springs)]
     if not (system.connections.damping.any() or system.connections.loss_factor.any()):
         warnings.append("no part has any damping: at a resonance the response has no bound")
     return {"summary": summary(model, gear), "equilibrium": springs, "modes": elastic, "warnings": warnings}
@@ -110,7 +110,7 @@ def standing(model: Model, point: OperatingPoint) -> Iterator[Document]:
             }
 
 
-def first_modes(model: Model, system: System, speed: float) -> Iterator[Document]:
+def _first_modes(model: Model, system: System, speed: float) -> Iterator[Document]:
     """The first elastic modes about the mean twist at a mean ``speed`` [rad/s], which tunes pendulums, by name."""
     found = modal(system, speed)
     names = named_modes(found, model.mode_groups)
@@ -119,7 +119,7 @@ def first_modes(model: Model, system: System, speed: float) -> Iterator[Document
         yield {"name": names[i], "frequency": amount(float(found.frequency[i]), "frequency")}
 
 
-def doubts(elastic: Sequence[Document], torque: float, springs: Sequence[Document]) -> Iterator[str]:
+def _doubts(elastic: Sequence[Document], torque: float, springs: Sequence[Document]) -> Iterator[str]:
     """Sentences about what the solved model shows."""
     low, high = USUAL_FIRST
     for mode in elastic[:1]:

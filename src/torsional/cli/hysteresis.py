@@ -50,16 +50,16 @@ def run(request: Request, gear: str, speed: str, sweep: str, rate: str, about: s
     speeds = listed(speed or SPEEDS, "speed", "--speed")
     pace = _positive(typed.read(rate, "angular_velocity", "--rate") if rate else RATE, "--rate", rate)
     centre = typed.read(about, "relative_angle", "--about") if about else 0.0
-    ends = chosen_ends(machine, turned, held)
+    ends = _chosen_ends(machine, turned, held)
     system = assemble(machine.detailed().powertrain(engaged))
-    own = f"{within_stops(system, ends, machine.landmarks.springs)} rad"
+    own = f"{_within_stops(system, ends, machine.landmarks.springs)} rad"
     sweeps = listed(sweep or own, "relative_angle", "--sweep")
     _positive(float(sweeps.min()), "--sweep", sweep)
     with progress("loops", request.quiet or request.as_json) as moved:
         data = hysteresis(system, *ends, speeds, sweeps, rate=pace, centre=centre, progress=moved)
     data = data.assign_attrs(model=machine.name, hash=machine.hash)
-    warn_beyond_stops(data, system, machine)
-    warn_open(data)
+    _warn_beyond_stops(data, system, machine)
+    _warn_open(data)
     told = told_settings(
         request,
         gear=engaged,
@@ -98,7 +98,7 @@ def _positive(value: float, option: str, text: str) -> float:
     return float(value)
 
 
-def chosen_ends(model: Model, turned: str, held: str) -> tuple[str, str]:
+def _chosen_ends(model: Model, turned: str, held: str) -> tuple[str, str]:
     """The nodes between which it is measured; ModelError where the file does not say and nobody names them."""
     first, last = absorber_ends(model)
     ends = turned or first, held or last
@@ -108,7 +108,7 @@ def chosen_ends(model: Model, turned: str, held: str) -> tuple[str, str]:
     return ends
 
 
-def within_stops(system: System, ends: tuple[str, str], springs: Sequence[str]) -> float:
+def _within_stops(system: System, ends: tuple[str, str], springs: Sequence[str]) -> float:
     """A sweep [rad] to just before the first stop of the absorber's springs, or a wide one where they have none."""
     c = on_bench(system, *ends).system.connections
     ways: list[float] = []
@@ -118,7 +118,7 @@ def within_stops(system: System, ends: tuple[str, str], springs: Sequence[str]) 
     return SHORT * min(ways) if ways else float(WIDEST)
 
 
-def warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:
+def _warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:
     """Say where the sweep goes into an end stop, whose stiffness then counts."""
     c = system.connections
     for name, law in zip(c.names, c.laws, strict=True):
@@ -137,7 +137,7 @@ def warn_beyond_stops(data: xr.Dataset, system: System, model: Model) -> None:
             complain(f"{told} goes beyond the stop of {name} at {at}: the loop has the stop in it", kind="warning")
 
 
-def warn_open(data: xr.Dataset) -> None:
+def _warn_open(data: xr.Dataset) -> None:
     """Say that cycles do not repeat."""
     worst = max(_cases(data), key=lambda case: float(data.closure.sel(speed=case[0], sweep=case[1])))
     most, count = float(data.closure.max()), int((data.closure > CLOSED).sum())

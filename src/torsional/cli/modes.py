@@ -57,7 +57,7 @@ def modes_of(model: Model, gear: str, torque: float, speed: float, order: float 
     """What `modal` finds, with names, the damped modes next to it, and the speed at which the order meets each mode."""
     system, _ = at_operating_point(model, torque, gear)
     found, damped = modal(system, speed), damped_modes(system, speed)
-    partner = paired(found, damped)
+    partner = _paired(found, damped)
     result = found.assign(
         name=("mode", np.array(named_modes(found, model.mode_groups))),
         damped_frequency=("mode", damped.frequency.values[partner], damped.frequency.attrs),
@@ -66,7 +66,7 @@ def modes_of(model: Model, gear: str, torque: float, speed: float, order: float 
     return result if order is None else result.assign(order_speed=order_speed(found.frequency, order))
 
 
-def paired(undamped: xr.Dataset, damped: xr.Dataset) -> list[int]:
+def _paired(undamped: xr.Dataset, damped: xr.Dataset) -> list[int]:
     """For each undamped mode the damped one most like it in shape and frequency; damping may add modes and swap some.
 
     The likeness of shapes is the modal assurance criterion (Allemang and Brown, Proc. 1st IMAC, 1982, 110).

@@ -47,7 +47,7 @@ _WIDER = "a wider range, or --isolated, may show one"
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class _View:
     """A response with what is looked at: nodes, connections, orders, and the motions at one value (None: no value)."""
 
     data: xr.Dataset
@@ -90,7 +90,7 @@ def run(
     motions = None if chosen is None else solutions_at(data, chosen)
     c = assemble(machine.powertrain(engaged)).connections
     stiffness = dict(zip(c.names, map(float, c.stiffness), strict=True))
-    view = View(
+    view = _View(
         data,
         nodes,
         elements,
@@ -117,7 +117,7 @@ def warn_unsettled(data: xr.Dataset, span: Span) -> None:
         complain(f"no stable periodic motion was found from {ends}; {told}", kind="warning")
 
 
-def _document(request: Request, gear: str, span: Span, at: float | None, view: View) -> dict[str, object]:
+def _document(request: Request, gear: str, span: Span, at: float | None, view: _View) -> dict[str, object]:
     """How it was asked, and the motions at the value chosen."""
     followed = {"name": span.name, "from": amount(span.low, span.quantity), "to": amount(span.high, span.quantity)}
     given: dict[str, object] = {"speed": span.speed and amount(span.speed, "speed")}
@@ -131,7 +131,7 @@ def _document(request: Request, gear: str, span: Span, at: float | None, view: V
     return {**head, "motions": described(view.motions.sel(node=list(view.nodes), element=list(view.elements)))}
 
 
-def _tables(view: View) -> list[Table]:
+def _tables(view: _View) -> list[Table]:
     data, quantity = view.data, view.quantity
     places = places_of(data, view.nodes, view.elements)
     found = [branch_table(data, quantity, view.heading)]
@@ -146,7 +146,7 @@ def _tables(view: View) -> list[Table]:
     return found
 
 
-def _picture(view: View) -> Figure:
+def _picture(view: _View) -> Figure:
     from torsional.plots import plot_periodic
 
     return plot_periodic(

@@ -24,7 +24,7 @@ from torsional.units import show
 Laws = Mapping[str, Law | None]
 
 
-def parameter_column(result: xr.Dataset, quantity: str, name: str = "") -> Column:
+def _parameter_column(result: xr.Dataset, quantity: str, name: str = "") -> Column:
     """A column of values of the continued parameter."""
     return Column(name or {"speed": "speed", "mean_torque": "torque"}.get(str(result.parameter), "value"), quantity)
 
@@ -58,7 +58,7 @@ def bifurcation_table(
     """Every bifurcation with the amplitude of the highest order asked for at each place."""
     at = bifurcation_points(result)
     main = max(orders)
-    columns = [Column("bifurcation"), Column("of branch", "number"), parameter_column(result, quantity, "at")]
+    columns = [Column("bifurcation"), Column("of branch", "number"), _parameter_column(result, quantity, "at")]
     columns += [Column(f"{_place(p)}, order {main:g} 0-peak", _quantity(p)) for p in places]
     rows = [
         [
@@ -96,7 +96,7 @@ def largest_tables(
             Column("at"),
             Column("of"),
             Column("largest", kind),
-            parameter_column(result, quantity),
+            _parameter_column(result, quantity),
             Column("branch", "number"),
         ]
         chosen = [place for place in places if _quantity(place) == kind]

@@ -98,13 +98,13 @@ def _warn_unsolved(data: xr.Dataset) -> None:
         complain(f"an undamped mode is met at {where}, where no response is finite; {remedy}", kind="warning")
 
 
-def orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
+def _orders_of(data: xr.Dataset, dim: str) -> xr.DataArray:
     """Orders of the acceleration at nodes, or of the torque of elements."""
     return acceleration(data.angle) if dim == "node" else data.torque
 
 
 def _table(data: xr.Dataset, dim: str, kind: str, which: str, title: str) -> Table:
-    orders = orders_of(data, dim)
+    orders = _orders_of(data, dim)
     columns = [Column(dim), Column("of"), Column("peak", kind), Column("at", "speed")]
     rows: list[Sequence[object]] = []
     for place in data[dim].values:
@@ -135,7 +135,7 @@ def _picture(data: xr.Dataset) -> Figure:
     from torsional.plots.style import figure_of, readable
 
     dims = [dim for dim in ("node", "element") if dim in data.dims]
-    places = {str(name): orders_of(data, dim).sel({dim: name}) for dim in dims for name in data[dim].values}
+    places = {str(name): _orders_of(data, dim).sel({dim: name}) for dim in dims for name in data[dim].values}
     columns = 1 if len(places) == 1 else 2
     drawn = panels(-(-len(places) // columns), columns)
     for axes, (place, values) in zip(drawn, places.items(), strict=False):

@@ -54,7 +54,7 @@ def _peaks(run: xr.Dataset, title: str) -> Table:
     columns += [Column("largest at", "time"), Column("lowest twist", "relative_angle")]
     columns += [Column("highest twist", "relative_angle")]
     names = ("torque_lowest", "torque_highest", "peak_time", "twist_lowest", "twist_highest")
-    rows = [[e, *_unrounded([float(run[name].sel(element=e)) for name in names])] for e in told_elements(run)]
+    rows = [[e, *_unrounded([float(run[name].sel(element=e)) for name in names])] for e in _told_elements(run)]
     return Table(f"Peaks, {title}" if title else "Peaks", columns, rows)
 
 
@@ -64,7 +64,7 @@ def _unrounded(figures: list[float]) -> list[float]:
     return [0.0 if abs(value) <= nothing else value for value in figures[:2]] + figures[2:]
 
 
-def told_elements(run: xr.Dataset) -> list[str]:
+def _told_elements(run: xr.Dataset) -> list[str]:
     """The elements worth a row: those the run names, all of them where it names none."""
     return json.loads(run.attrs["told"]) if "told" in run.attrs else [str(e) for e in run.element.values]
 
@@ -124,7 +124,7 @@ def _rubbing(run: xr.Dataset, nothing: float) -> list[Sequence[object]]:
     if "friction_loss" not in run:
         return []
     lost = {str(name): float(run.friction_loss.sel(rubbing=name)[-1]) for name in run.rubbing.values}
-    own = [[f"  of it in {name}", lost.pop(name)] for name in told_elements(run) if name in lost]
+    own = [[f"  of it in {name}", lost.pop(name)] for name in _told_elements(run) if name in lost]
     engine = [name for name in lost if name.removeprefix("friction_") in run.node.values]
     own += [["  of it in the engine", sum(lost.pop(name) for name in engine)]] if engine else []
     inner = sum(lost.values())

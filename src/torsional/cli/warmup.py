@@ -38,7 +38,7 @@ def run(as_json: bool, quiet: bool) -> None:
     """Answer the command."""
     seconds: dict[str, float] = {}
     with progress("compiling", quiet or as_json) as moved:
-        todo = list(steps(small_model()))
+        todo = list(steps(_small_model()))
         for done, (name, work) in enumerate(todo, 1):
             start = time.perf_counter()
             work()
@@ -52,7 +52,7 @@ def run(as_json: bool, quiet: bool) -> None:
         print_tables([Table("Kernels are ready", [Column("for"), Column("took", "time")], rows)])
 
 
-def small_model() -> Model:
+def _small_model() -> Model:
     """The starter truck, through the same reader as any other."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "truck.yaml"

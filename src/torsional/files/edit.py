@@ -57,10 +57,10 @@ def parsed_edit(text: str, example: str = "absorber.stages.0.stiffness=10kNm/rad
 
 def document_paths(model: Model) -> tuple[str, ...]:
     """The key paths of all single values of a model's document, in its order; contents of files are left out."""
-    return tuple(path for path, _ in document_values(model.document))
+    return tuple(path for path, _ in _document_values(model.document))
 
 
-def document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+def _document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """Key paths and single values of a document."""
     if not isinstance(value, Mapping | list):
         yield path, value
@@ -68,7 +68,7 @@ def document_values(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     items = value.items() if isinstance(value, Mapping) else enumerate(value)
     for key, item in items:
         if not (key == "text" and "file" in value):
-            yield from document_values(item, f"{path}.{key}" if path else str(key))
+            yield from _document_values(item, f"{path}.{key}" if path else str(key))
 
 
 def put(document: dict[str, Any], path: str, value: Any) -> None:

@@ -88,7 +88,7 @@ def _in_file(file: str | None, path: str) -> Iterator[None]:
 
 
 def _trace(block: PressureTraceBlock) -> PressureTrace:
-    text = embedded_text(block.file, block.text, "engine.pressure_trace")
+    text = _embedded_text(block.file, block.text, "engine.pressure_trace")
     with _in_file(block.file, "engine.pressure_trace"):
         return PressureTrace.from_text(text, speed=block.speed, offset=block.offset, own_angle=block.own_angle)
 
@@ -97,14 +97,14 @@ def _full_load(block: FullLoadBlock) -> FullLoad:
     if block.speed is not None and block.torque is not None:
         columns = {"speed": block.speed, "torque": block.torque}
     else:
-        text = embedded_text(block.file, block.text, "engine.full_load")
+        text = _embedded_text(block.file, block.text, "engine.full_load")
         with _in_file(block.file, "engine.full_load"):
             columns = parse_table(text, {"speed": "speed", "torque": "torque"}, increasing="speed")
     with within("engine.full_load"):
         return FullLoad(tuple(columns["speed"]), tuple(columns["torque"]))
 
 
-def embedded_text(file: str | None, text: str | None, path: str) -> str:
+def _embedded_text(file: str | None, text: str | None, path: str) -> str:
     """The content of a file that a model refers to, which loading has put beside its name."""
     if text is None:
         remedy = "load the model with load_model, or give its folder"

@@ -60,10 +60,10 @@ def _operation(model: Model) -> dict[str, Any]:
 
 
 def _written(parts: Mapping[str, Component]) -> dict[str, Any]:
-    return {name: component_document(part, name) for name, part in parts.items()}
+    return {name: _component_document(part, name) for name, part in parts.items()}
 
 
-def component_document(part: Component, name: str = "") -> dict[str, Any]:
+def _component_document(part: Component, name: str = "") -> dict[str, Any]:
     """A component as the model file writes it: its type and what differs from the defaults."""
     kind: Any = type(part)
     if kind not in _TYPES:

@@ -54,13 +54,13 @@ def plot_branches(
     parameter are marked by their letters.  The ``legend`` stands beside the first panel.
     """
     drawn = list(axes) if axes is not None else style.panels(len(shown), 1, (8.0, 2.6), sharex=True)
-    signal = signal_of(result, element, node, quantity)
+    signal = _signal_of(result, element, node, quantity)
     told, scale = parameter_axis(result)
     for number, (kind, panel) in enumerate(zip(shown, drawn, strict=True)):
         _draw(panel, result, measured(signal, kind), scale)
         _limit(panel, measured(signal, kind), kind, signal)
         if solutions is not None and solutions.sizes["point"]:
-            _mark(panel, solutions, measured(signal_of(solutions, element, node, quantity), kind), scale)
+            _mark(panel, solutions, measured(_signal_of(solutions, element, node, quantity), kind), scale)
         panel.set_ylabel(_label(signal, kind))
         if number == len(shown) - 1:
             panel.set_xlabel(told)
@@ -69,7 +69,7 @@ def plot_branches(
     return style.figure_of(drawn[0])
 
 
-def signal_of(result: xr.Dataset, element: str = "", node: str = "", quantity: str = "") -> xr.DataArray:
+def _signal_of(result: xr.Dataset, element: str = "", node: str = "", quantity: str = "") -> xr.DataArray:
     """Complex orders (point, order) of one element's torque or twist, or of one node's acceleration or angle."""
     kind = quantity or QUANTITIES_OF["node" if node else "element"][0]
     if node:
@@ -171,7 +171,7 @@ def _marker(marker: str) -> dict[str, object]:
     return {"color": style.INK, "markeredgecolor": "white", "markeredgewidth": 0.7, "markersize": size, "zorder": 4}
 
 
-def branch_name(result: xr.Dataset, number: int) -> str:
+def _branch_name(result: xr.Dataset, number: int) -> str:
     """A branch in words: its number, how it came about, and the lowest order that its motions are made of."""
     return f"{number}: {result.kind.values[number]}, base order {float(result.base_order[number]):g}"
 
@@ -179,7 +179,7 @@ def branch_name(result: xr.Dataset, number: int) -> str:
 def _legend(axes: Axes, result: xr.Dataset) -> None:
     """Branches, stability and the kinds of bifurcation that are there, beside the first panel."""
     for number in branch_numbers(result):
-        axes.plot([], [], color=branch_colour(number), linewidth=1.9, label=branch_name(result, number))
+        axes.plot([], [], color=branch_colour(number), linewidth=1.9, label=_branch_name(result, number))
     if not result.stable.values.all():
         axes.plot([], [], **{**look(7, False), "color": style.FAINT}, label="unstable")  # type: ignore[arg-type]
     for kind in dict.fromkeys(str(k) for k in result.bifurcation_type.values):

@@ -35,7 +35,7 @@ class Link:
             return f"{show(self.law.stiffness, 'stiffness')}, slips at {show(self.law.limit_torque, 'torque')}"
         values = [self.stiffness]
         if self.law is not None and self.law.hinges() is not None:
-            values = stage_stiffnesses(self.law)
+            values = _stage_stiffnesses(self.law)
         if not any(values):
             return ""
         *first, last = [show(value, "stiffness") for value in values]
@@ -52,11 +52,11 @@ class Chain:
     ratio: Mapping[str, float]
 
 
-def stage_stiffnesses(law: Law) -> list[float]:
+def _stage_stiffnesses(law: Law) -> list[float]:
     """Stiffnesses [Nm/rad] of the stages a spring goes through in drive, from zero to its stop, stop left out.
 
     >>> from torsional.laws import Hinges
-    >>> stage_stiffnesses(Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6))
+    >>> _stage_stiffnesses(Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6))
     [8000.0, 24000.0]
     """
     return [float(value) for value in law.tangent(np.array(stage_angles(law))) if value > 0]

@@ -39,9 +39,9 @@ def plot_scenario(run: xr.Dataset) -> Figure:
     drawn = [figure.add_subplot(grid[row, 0], sharex=last) for row in (0, 1, 2)] + [last]
     nodes = list(dict.fromkeys([run.attrs["crank"], *_listed(run, "looked_at")]))
     draw_motion(drawn[1:], run, nodes, _listed(run, "springs"), _listed(run, "watched"))
-    draw_events(drawn[0], run)
-    draw_capacity(last, run)
-    draw_phases(drawn, run)
+    _draw_events(drawn[0], run)
+    _draw_capacity(last, run)
+    _draw_phases(drawn, run)
     for axes in drawn[:-1]:
         axes.tick_params(labelbottom=False)
     last.set_xlabel("time [s]")
@@ -49,7 +49,7 @@ def plot_scenario(run: xr.Dataset) -> Figure:
     return figure
 
 
-def draw_events(axes: Axes, run: xr.Dataset) -> None:
+def _draw_events(axes: Axes, run: xr.Dataset) -> None:
     """One strip an event, as high as the event is strong, named with its largest value."""
     axes.grid(visible=False)
     axes.set_yticks([])
@@ -70,7 +70,7 @@ def draw_events(axes: Axes, run: xr.Dataset) -> None:
     axes.set_ylim(0.1 - len(run.event), 1.0)
 
 
-def draw_phases(drawn: Sequence[Axes], run: xr.Dataset) -> None:
+def _draw_phases(drawn: Sequence[Axes], run: xr.Dataset) -> None:
     """A line through all panels where a phase begins, and its name above, aslant where there is little room."""
     if "phase" not in run.coords:
         return
@@ -91,7 +91,7 @@ def draw_phases(drawn: Sequence[Axes], run: xr.Dataset) -> None:
         )
 
 
-def draw_capacity(axes: Axes, run: xr.Dataset) -> None:
+def _draw_capacity(axes: Axes, run: xr.Dataset) -> None:
     """What linings among the elements could carry at most, as a dashed line that does not widen the picture."""
     name = "clutch capacity"
     if "schedule" not in run or name not in run.event.values:

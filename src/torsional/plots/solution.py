@@ -98,7 +98,7 @@ def plot_loops(
     drawn.plot(style.shown(angle, "relative_angle"), static, color=style.INK, linewidth=1.0, zorder=2, label="spring")
     for point in range(twists.sizes["point"]):
         x, y = style.shown(twists.isel(point=point)), style.shown(torques.isel(point=point))
-        told = {**_look(solutions, point), "label": solution_name(solutions, point)}
+        told = {**_look(solutions, point), "label": _solution_name(solutions, point)}
         drawn.plot([*x, x[0]], [*y, y[0]], gid="loop", **told)  # type: ignore[arg-type]
     drawn.set_xlim(*style.shown(angle[[0, -1]], "relative_angle"))
     high, low = float(torques.max()), float(torques.min())
@@ -110,7 +110,7 @@ def plot_loops(
     return figure
 
 
-def solution_name(solutions: xr.Dataset, point: int) -> str:
+def _solution_name(solutions: xr.Dataset, point: int) -> str:
     """A motion's letter, the branch it is on, and whether it is stable."""
     number = int(solutions.branch[point])
     return f"{letter(point)}: branch {number}, {solutions.kind.values[number]}" + (
@@ -126,7 +126,7 @@ def _look(solutions: xr.Dataset, point: int) -> dict[str, object]:
     return look(spare + again.index(point) if point in again else number, bool(solutions.stable[point]))
 
 
-def stage_colour(name: str) -> str:
+def _stage_colour(name: str) -> str:
     """The shade of a stage: the stiffer the darker, the stop in another colour; the same for coasting."""
     plain = name.removesuffix(", coast")
     number = int(plain.removeprefix("stage ")) if plain.startswith("stage ") else 1
@@ -142,7 +142,7 @@ def _shade(axes: Axes, law: Law, upright: bool) -> None:
     borders = [low, *edges, high]
     for a, b in pairwise(borders):
         name = stage_parts(law, np.radians([0.5 * (a + b)]))[0]
-        (axes.axvspan if upright else axes.axhspan)(a, b, color=stage_colour(name), alpha=0.55, zorder=0, linewidth=0)
+        (axes.axvspan if upright else axes.axhspan)(a, b, color=_stage_colour(name), alpha=0.55, zorder=0, linewidth=0)
         _name_stage(axes, name, 0.5 * (a + b), (b - a) / (high - low), upright)
     for edge in edges:
         (axes.axvline if upright else axes.axhline)(edge, color=style.FAINT, linewidth=0.8, zorder=1, gid="boundary")
@@ -185,5 +185,5 @@ def _draw_strip(axes: Axes, row: int, degrees: Array, names: Sequence[str]) -> N
     step, start = float(degrees[1] - degrees[0]), 0
     for name, run in groupby(names):
         length = len(list(run))
-        axes.barh(row, length * step, 0.8, left=start * step, color=stage_colour(name), gid="stage", zorder=1)
+        axes.barh(row, length * step, 0.8, left=start * step, color=_stage_colour(name), gid="stage", zorder=1)
         start += length

@@ -45,15 +45,15 @@ def draw_motion(
     for node in nodes:
         at_engine = run.angular_velocity.sel(node=node) / (float(ratio.sel(node=node)) or 1.0)
         named = style.readable(node) + ("" if abs(float(ratio.sel(node=node)) - 1) < 1e-9 else ", as at the engine")
-        draw_line(drawn[0], run, style.shown(at_engine, "speed"), named)
+        _draw_line(drawn[0], run, style.shown(at_engine, "speed"), named)
     drawn[0].set_ylabel(style.label("speed", name="speed"))
     for spring in springs or elements:
-        draw_line(drawn[1], run, style.shown(run.twist.sel(element=spring)), style.readable(spring))
-    draw_stops(drawn[1], run, springs)
+        _draw_line(drawn[1], run, style.shown(run.twist.sel(element=spring)), style.readable(spring))
+    _draw_stops(drawn[1], run, springs)
     drawn[1].set_ylabel(style.label("relative_angle", name="twist"))
     for place, element in enumerate([*springs, *elements]):
         values = style.shown(run.torque.sel(element=element))
-        draw_line(drawn[2], run, values, style.readable(element), place)
+        _draw_line(drawn[2], run, values, style.readable(element), place)
     drawn[2].set_ylabel(style.label("torque", name="torque"))
     for axes in drawn[:3]:
         axes.set_xlim(float(run.time[0]), float(run.time[-1]))
@@ -61,7 +61,7 @@ def draw_motion(
             axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.985), ncols=4, borderpad=0.1)
 
 
-def draw_line(axes: Axes, run: xr.Dataset, values: Array, name: str, place: int = -1) -> None:
+def _draw_line(axes: Axes, run: xr.Dataset, values: Array, name: str, place: int = -1) -> None:
     """One signal over time, thinned to its envelope where it has more points than can be seen."""
     time, thin = envelope(run.time.values, np.asarray(values))
     width = 1.1 if len(time) > 800 else 1.5
@@ -84,7 +84,7 @@ def envelope(time: Array, values: Array, most: int = MOST_POINTS) -> tuple[Array
     return time[places], values[places]
 
 
-def draw_stops(axes: Axes, run: xr.Dataset, springs: Sequence[str]) -> None:
+def _draw_stops(axes: Axes, run: xr.Dataset, springs: Sequence[str]) -> None:
     """Lines at the stops of springs that have any, and a mark wherever one is met."""
     named = False
     for spring in springs:

@@ -21,14 +21,14 @@ def motion_blocks(variant: Variant) -> list[Block]:
         return []
     blocks: list[Block] = [Heading(variant.label)]
     if motions.at is not None:
-        blocks += [region_picture(variant, motions), region_table(motions), branch_picture(motions)]
+        blocks += [_region_picture(variant, motions), _region_table(motions), _branch_picture(motions)]
     if motions.full_load.sizes["bifurcation"] or motions.at is None:
-        blocks.append(full_load_picture(motions))
+        blocks.append(_full_load_picture(motions))
     return blocks
 
 
 @style.styled
-def region_picture(variant: Variant, motions: Motions) -> Picture:
+def _region_picture(variant: Variant, motions: Motions) -> Picture:
     """Torque and acceleration of the sub-harmonic order over speed and mean torque."""
     region = motions.region
     curve = full_load_curve(variant.model, float(region.speed[0]), float(region.speed[-1]))
@@ -41,7 +41,7 @@ def region_picture(variant: Variant, motions: Motions) -> Picture:
     return picture(style.figure_of(axes[0]), caption, "Two colour maps over speed and mean torque with a boundary.")
 
 
-def region_table(motions: Motions) -> Table:
+def _region_table(motions: Motions) -> Table:
     """The speeds of the region at every mean torque."""
     inside = within(motions.region)
     rows = []
@@ -56,7 +56,7 @@ def region_table(motions: Motions) -> Table:
     return table(caption, head, rows, numbers=(0, 1, 2, 3, 4), folded=True)
 
 
-def branch_picture(motions: Motions) -> Picture:
+def _branch_picture(motions: Motions) -> Picture:
     """Branches at the mean torque of the largest sub-harmonic amplitude, and the motions at its speed."""
     branches, at = motions.branches, motions.at
     assert branches is not None and at is not None
@@ -81,7 +81,7 @@ def branch_picture(motions: Motions) -> Picture:
     )
 
 
-def full_load_picture(motions: Motions) -> Picture:
+def _full_load_picture(motions: Motions) -> Picture:
     """Branches along full load."""
     main = float(motions.full_load.attrs["main_order"])
     figure = plots.plot_periodic(motions.full_load, [main, "swing"], elements=[motions.element], nodes=[motions.node])

@@ -15,7 +15,7 @@ def sections(comparison: Comparison) -> list[Section]:
     """All sections that have something to tell."""
     made = [summary(comparison), *[machine(comparison, v, i) for i, v in enumerate(comparison.variants)]]
     made += [interference(comparison), excitation(comparison), cuts(comparison), maps(comparison)]
-    made += [springs(comparison), motions(comparison), synthesis(comparison), conventions(comparison)]
+    made += [springs(comparison), motions(comparison), _synthesis(comparison), conventions(comparison)]
     return [section for section in made if section.blocks]
 
 
@@ -106,7 +106,7 @@ def motions(comparison: Comparison) -> Section:
     return Section("motions", "Periodic motions, springs as they are", tuple(blocks))
 
 
-def synthesis(comparison: Comparison) -> Section:
+def _synthesis(comparison: Comparison) -> Section:
     """The signal over the cycle."""
     return Section("cycle", "Over one engine cycle", tuple(response_pictures.cycle_pictures(comparison)))
 

@@ -13,7 +13,7 @@ from torsional.numerics.balance.sampled_spectrum import remembered_spectrum, smo
 
 
 @numba.njit(cache=True, error_model="numpy")
-def own_motion(z: Array, connection: int, connections: int, x: Array) -> None:
+def _own_motion(z: Array, connection: int, connections: int, x: Array) -> None:
     """Put (x_0, Re X_1, Im X_1, …) of one connection into x."""
     x[0] = z[connection]
     for h in range(1, x.size // 2 + 1):
@@ -61,7 +61,7 @@ def force_harmonics(
     (H + 1,) of the harmonics with the pace νΩ, crossings."""
     m, count = balance.reference_stiffness.size, force.size
     x = np.empty(2 * count - 1)
-    own_motion(z, e, m, x)
+    _own_motion(z, e, m, x)
     law = balance.law_values[balance.law_start[e] : balance.law_start[e + 1]]
     pace = balance.base_order * speed
     if balance.address[e] == 0:

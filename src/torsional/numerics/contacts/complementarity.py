@@ -90,7 +90,7 @@ def _returned(closed: IntArray, seen: IntArray, since: int) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def block_pivoting(matrix: Array, offset: Array, closed: IntArray, force: Array) -> tuple[int, int]:
+def _block_pivoting(matrix: Array, offset: Array, closed: IntArray, force: Array) -> tuple[int, int]:
     """Solve the scaled problem in place, from the contacts that are ``closed`` (n,) of 0 and 1 to begin with.
 
     All wrong contacts change sides at once; where that has not lowered their number three times, the last one alone
@@ -140,7 +140,7 @@ def solve_contacts(
     force = np.zeros(p.size)
     if not p.size:
         return Contacts(force, pushing, 0, 0)
-    passes, single = block_pivoting(np.ascontiguousarray(d[:, None] * M * d), d * p, pushing, force)
+    passes, single = _block_pivoting(np.ascontiguousarray(d[:, None] * M * d), d * p, pushing, force)
     if passes < 0:
         raise ModelError("contacts have no solution to be found", remedy="every stiffness must be positive and finite")
     return Contacts(d * force, pushing, passes, single)

@@ -20,7 +20,7 @@ ELSEWHERE = (0.5, 0.25, 0.75, 0.1, 0.9)
 Measure = Callable[[Point | Corrected], float]
 
 
-class Located(NamedTuple):
+class _Located(NamedTuple):
     """A point where the measure is zero, and the bound of its error along the curve."""
 
     point: Point | Corrected
@@ -44,14 +44,14 @@ def crosses(before: float, after: float) -> bool:
     return before < 0.0 <= after or before > 0.0 >= after
 
 
-def locate(
+def _locate(
     problem: Problem,
     here: Point,
     there: Point | Corrected,
     measure: Measure,
     tolerance: float,
     share: float | None = None,
-) -> Located:
+) -> _Located:
     """The point between two at which a measure of points is zero, of which it has different signs at the two.
 
     Places are counted along the tangent of the first, a first guess is a ``share`` of the way; each sample is corrected
@@ -63,7 +63,7 @@ def locate(
     a = _Sample(0.0, measure(here), here)
     b = _Sample(float(normal.dot(there.z - here.z)), measure(there), there)
     if b.value == 0.0:
-        return Located(there, 0.0)
+        return _Located(there, 0.0)
     c, failures = a, 0
     t = a.value / (a.value - b.value) if share is None else share
     for _ in range(MOST_CORRECTIONS):
@@ -80,7 +80,7 @@ def locate(
             break
         t = _next(a, b, c, tolerance)
     best = min(a, b, key=lambda sample: abs(sample.value))
-    return Located(best.point, _error(a, b, c) if best is a else abs(b.place - a.place))
+    return _Located(best.point, _error(a, b, c) if best is a else abs(b.place - a.place))
 
 
 def _error(a: _Sample, b: _Sample, c: _Sample) -> float:
@@ -136,7 +136,7 @@ class Watch:
 
     def located(self, here: Point, there: Point, name: str, measure: Measure, share: float | None = None) -> Point:
         """One event between two points."""
-        found = locate(self.problem, here, there, measure, self.tolerance(here, there), share)
+        found = _locate(self.problem, here, there, measure, self.tolerance(here, there), share)
         chord = float(np.linalg.norm(found.point.z - here.z))
         arc = arc_between(here, found.point)
         if arc > LONGEST_ARC * chord:  # where curves cross, the tangent found may be the other one's

@@ -20,7 +20,7 @@ def fill(w: Array, row: int, lo: int, hi: int, value: float) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def fill_line(w: Array, row: int, lo: int, hi: int, value: float, factor: float, other: int) -> None:
+def _fill_line(w: Array, row: int, lo: int, hi: int, value: float, factor: float, other: int) -> None:
     """Set lanes lo … hi of a row to value + factor × another row."""
     r, o = np.uint64(row), np.uint64(other)
     for l in range(np.uint64(lo), np.uint64(hi)):
@@ -28,7 +28,7 @@ def fill_line(w: Array, row: int, lo: int, hi: int, value: float, factor: float,
 
 
 @njit(cache=True, error_model="numpy")
-def add_line(w: Array, row: int, lo: int, hi: int, factor: float, other: int) -> None:
+def _add_line(w: Array, row: int, lo: int, hi: int, factor: float, other: int) -> None:
     """Add factor × another row to lanes lo … hi of a row."""
     r, o = np.uint64(row), np.uint64(other)
     for l in range(np.uint64(lo), np.uint64(hi)):
@@ -124,13 +124,13 @@ def assemble(w: Array, rows: IntArray, sums: int, slots: Array, design: int, lo:
         row, k, h = rows[q], slots[design, q, 0], slots[design, q, 1]
         c, s, m = slots[design, q, 2], slots[design, q, 3], slots[design, q, 4]
         if m != 0.0:
-            fill_line(w, row, lo, hi, k, -m, OMEGA_SQUARED)
+            _fill_line(w, row, lo, hi, k, -m, OMEGA_SQUARED)
         else:
             fill(w, row, lo, hi, k)
         if s != 0.0:
-            add_line(w, row, lo, hi, s, SPEED_SQUARED)
+            _add_line(w, row, lo, hi, s, SPEED_SQUARED)
         if c != 0.0:
-            fill_line(w, row + L, lo, hi, h, c, OMEGA)
+            _fill_line(w, row + L, lo, hi, h, c, OMEGA)
         else:
             fill(w, row + L, lo, hi, h)
         if q < sums:

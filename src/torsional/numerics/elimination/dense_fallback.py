@@ -15,7 +15,7 @@ from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.elimination.assembly import weight_sum
 
 Pair = tuple[float, float]
-Quad = tuple[float, float, float, float]
+_Quad = tuple[float, float, float, float]
 
 MAGNIFICATION_LIMIT = 1e12
 """Forces inside the system this many times the loads mean a resonance that no damping limits."""
@@ -58,13 +58,13 @@ def _inverse(a: Pair) -> Pair:
 
 
 @njit(error_model="numpy")
-def _add(a: Quad, b: Quad) -> Quad:
+def _add(a: _Quad, b: _Quad) -> _Quad:
     re, im = _sum((a[0], a[1]), (b[0], b[1])), _sum((a[2], a[3]), (b[2], b[3]))
     return re[0], re[1], im[0], im[1]
 
 
 @njit(error_model="numpy")
-def _multiply(a: Quad, b: Quad) -> Quad:
+def _multiply(a: _Quad, b: _Quad) -> _Quad:
     ar, ai, br, bi = (a[0], a[1]), (a[2], a[3]), (b[0], b[1]), (b[2], b[3])
     re = _sum(_product(ar, br), _product((-ai[0], -ai[1]), bi))
     im = _sum(_product(ar, bi), _product(ai, br))
@@ -72,7 +72,7 @@ def _multiply(a: Quad, b: Quad) -> Quad:
 
 
 @njit(error_model="numpy")
-def _reciprocal(a: Quad) -> Quad:
+def _reciprocal(a: _Quad) -> _Quad:
     ar, ai = (a[0], a[1]), (a[2], a[3])
     q = _inverse(_sum(_product(ar, ar), _product(ai, ai)))
     re, im = _product(ar, q), _product(ai, q)
@@ -80,23 +80,23 @@ def _reciprocal(a: Quad) -> Quad:
 
 
 @njit(error_model="numpy")
-def _scale(a: Quad, factor: float) -> Quad:
+def _scale(a: _Quad, factor: float) -> _Quad:
     re, im = _product((a[0], a[1]), (factor, 0.0)), _product((a[2], a[3]), (factor, 0.0))
     return re[0], re[1], im[0], im[1]
 
 
 @njit(error_model="numpy")
-def _quad(row: Array) -> Quad:
+def _quad(row: Array) -> _Quad:
     return row[0], row[1], row[2], row[3]
 
 
 @njit(error_model="numpy")
-def _put(row: Array, a: Quad) -> None:
+def _put(row: Array, a: _Quad) -> None:
     row[0], row[1], row[2], row[3] = a
 
 
 @njit(error_model="numpy")
-def _stamp(Z: Array, weights: Array, value: Quad) -> None:
+def _stamp(Z: Array, weights: Array, value: _Quad) -> None:
     """Add z w wᵀ, the diagonal as row sum less couplings so that a rigid rotation meets exactly no stiffness."""
     total = weight_sum(weights)
     for i in range(weights.size):

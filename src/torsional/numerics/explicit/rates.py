@@ -64,7 +64,7 @@ def places(equations: Equations, flows: Mapping[int, int] | None = None) -> Plac
         remedy = "take the implicit steps, or LuGre friction"
         raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
     mass = np.zeros((n, n))
-    add_masses(equations.mass_rows, equations.inertia, mass, 0)
+    _add_masses(equations.mass_rows, equations.inertia, mass, 0)
     if np.linalg.matrix_rank(mass, hermitian=True) < n:
         raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
     memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
@@ -76,7 +76,7 @@ def places(equations: Equations, flows: Mapping[int, int] | None = None) -> Plac
 
 
 @numba.njit(cache=True, error_model="numpy")
-def add_masses(rows: Rows, inertia: Array, mass: Array, first: int) -> None:
+def _add_masses(rows: Rows, inertia: Array, mass: Array, first: int) -> None:
     """Add Σ J_m v_m v_mᵀ to M (N, N), of the rows from the ``first`` on."""
     for m in range(inertia.size):
         begin, end = rows.start[first + m], rows.start[first + m + 1]
@@ -178,7 +178,7 @@ def _accelerate(at: Places, y: Array, frame: tuple[float, float], torque: Array,
     crank_terms(outside, frame[1], frame[0], y[:n], y[n : 2 * n], constant, inertia)
     for m in range(pistons):
         add_row(outside.rows, first + m, constant[m], torque)
-    add_masses(outside.rows, inertia, mass, first)
+    _add_masses(outside.rows, inertia, mass, first)
     order = np.empty(n, dtype=np.int64)
     factor(mass, order)
     backsolve(mass, order, torque)

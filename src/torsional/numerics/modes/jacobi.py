@@ -153,7 +153,7 @@ def _clear(a: Array, step: int, factor: Array) -> None:
 
 
 @njit(cache=True)
-def eliminate_completely(a: Array, rank: int) -> IntArray:
+def _eliminate_completely(a: Array, rank: int) -> IntArray:
     """Overwrite a (rows, columns, lanes) with L and D U of P A Q = L D U; returns the pivoted order of the columns.
 
     Complete pivoting gives each factor small relative errors when A is an incidence matrix between two diagonals, which
@@ -181,7 +181,7 @@ def graded_rows(a: Array, rank: int) -> tuple[Array, IntArray]:
     A = L D U first, then L D P = (orthogonal) R and X = R Pᵀ U; a is overwritten.
     """
     rows, columns, lanes = a.shape
-    order = eliminate_completely(a, rank)
+    order = _eliminate_completely(a, rank)
     lower, upper = np.zeros((rows, rank, lanes)), np.zeros((rank, columns, lanes))
     for k in range(rank):
         lower[k, k] = a[k, k]

@@ -56,7 +56,7 @@ def row_product(rows: Rows, i: int, x: Array) -> float:
 
 
 @uncounted()
-def row_sum(rows: Rows, i: int) -> float:
+def _row_sum(rows: Rows, i: int) -> float:
     """Row i times the rigid rotation, the vector of ones."""
     total = 0.0
     for k in range(rows.start[i], rows.start[i + 1]):
@@ -224,7 +224,7 @@ def governor_error(outside: Outside, g: int, t: float, frame_speed: float, v: Ar
     """What the speed that governor g senses lacks of the one that it wants [rad/s]."""
     wanted = level_at(outside.level_start, outside.knots, outside.governor_places[WANTED_OF, g], t)
     row = outside.sense + g
-    return wanted - (row_product(outside.rows, row, v) + frame_speed * row_sum(outside.rows, row))
+    return wanted - (row_product(outside.rows, row, v) + frame_speed * _row_sum(outside.rows, row))
 
 
 @uncounted()

@@ -141,10 +141,10 @@ class Segments:
     offsets: Array
 
 
-def law_segments(parameters: ArrayLike) -> Segments:
+def _law_segments(parameters: ArrayLike) -> Segments:
     """Stages of a law given as k0 and rows of (gap, side, change of stiffness).
 
-    >>> law_segments([1.0, 1.0, 1.0, 1.0])
+    >>> _law_segments([1.0, 1.0, 1.0, 1.0])
     Segments(edges=array([1.]), slopes=array([1., 2.]), offsets=array([ 0., -1.]))
     """
     values = np.asarray(parameters, dtype=float)
@@ -218,7 +218,7 @@ class StageBases:
 
     def __post_init__(self) -> None:
         weights = np.atleast_2d(np.asarray(self.weights, dtype=float))
-        laws = tuple(law_segments(values) for values in self.parameters)
+        laws = tuple(_law_segments(values) for values in self.parameters)
         if len(weights) != len(laws):
             raise ModelError("every connection needs one law", found=f"{len(weights)} and {len(laws)}")
         reference = np.array([_mean_slope(law) for law in laws])

@@ -30,7 +30,7 @@ LITTLE = 0.02
 """Change from period to period, over the motion's size, that half the step is asked about."""
 
 
-class Ended(IntEnum):
+class _Ended(IntEnum):
     """How a point ended, below zero; zero and above it is a `Status` of the march."""
 
     RESTLESS = -1  # not periodic within the periods that it is given
@@ -231,7 +231,7 @@ def settled_points(
         count, k, left, size, n, total = 1, 0, np.inf, 0.0, 0, limits.parts
         while n < total:
             if k == 0 and limits.blocks * BLOCK < count + BLOCK - 1:
-                told.counts[p, HOW] = Ended.RESTLESS
+                told.counts[p, HOW] = _Ended.RESTLESS
                 return p
             wanted = _every(at, steps) if k else _moments(at, steps)
             # called in one place, since its code comes with every call
@@ -247,7 +247,7 @@ def settled_points(
             size = _size(room.views, room.points[count])
             k, left = repeats(room.points[:count], size, limits.longest, limits.tolerance)
             if k > 1 and limits.tolerance < gap_between(room.points[:count], size, limits.longest, 1) < LITTLE:
-                told.counts[p, HOW] = Ended.FINER
+                told.counts[p, HOW] = _Ended.FINER
                 return p
             while k and total % k:
                 total += limits.parts

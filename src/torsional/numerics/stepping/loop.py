@@ -59,7 +59,7 @@ def new_work(plan: Plan, state: State) -> Work:
 
 
 @inlined()
-def rung_of(method: tuple[float, float, float, float], h: float) -> Method:
+def _rung_of(method: tuple[float, float, float, float], h: float) -> Method:
     """The numbers of a step of h from α_m, α_f, β, γ."""
     alpha_m, alpha_f, beta, gamma = method
     return Method(alpha_m, beta, gamma, (1.0 - alpha_m) / (1.0 - alpha_f), beta * h * h, gamma * h, h)
@@ -139,12 +139,12 @@ def run(
     masses, constants, hinges, fill, law_places = plan.masses, plan.constants, plan.hinges, plan.fill, plan.laws.places
     begin, q, counts, trial = state.begin[0], state.coordinates, state.counts, w.trial
     now, bent, speeds = w.now, w.bent, w.driving.speeds
-    n, tick, ticks, built, m, steady = 0, 0, 1 << settings.rungs, -1, rung_of(method, h), w.solver.matrix[STEADY]
+    n, tick, ticks, built, m, steady = 0, 0, 1 << settings.rungs, -1, _rung_of(method, h), w.solver.matrix[STEADY]
     k = record(constants, masses, hinges, law_places, state, h, records, at, 0, n)
     while n < steps:
         rung = counts[Count.RUNG]
         if rung != built:
-            m, built = rung_of(method, h * 0.5**rung), rung
+            m, built = _rung_of(method, h * 0.5**rung), rung
             begin_rung(masses, constants, hinges, fill, now, bent.hinges, steady, speeds, m, settings.guard)
         wide = ticks >> rung
         status = settle(plan, state, w, m, settings, begin + (counts[Count.BASE_STEPS] + (tick + wide) / ticks) * h)

@@ -78,7 +78,7 @@ def settle(plan: Plan, state: State, w: Work, m: Method, settings: Settings, t: 
     torques(now)
     if bent.laws.shape[1]:
         drags(laws.places, bent, before, memory)
-        bend_all(laws, before, memory, now, bent, speeds, m, 0)
+        _bend_all(laws, before, memory, now, bent, speeds, m, 0)
     if driving.cranks.shape[1]:
         speeds[VALID] = 0.0
     status = _passes(plan, state, w, m, settings)
@@ -117,14 +117,14 @@ def _passes(plan: Plan, state: State, w: Work, m: Method, settings: Settings) ->
             retangent(constants, hinges, now, bent.hinges, speeds, m)
             torques(now)
         if bent.laws.shape[1]:
-            off = bend_all(laws, before, memory, now, bent, speeds, m, n)
+            off = _bend_all(laws, before, memory, now, bent, speeds, m, n)
         if not wrong and off <= agreement * _largest(now, bent.laws):
             return Status.DONE
     return Status.UNSETTLED
 
 
 @inner()
-def bend_all(
+def _bend_all(
     laws: Laws, before: Array, memory: Array, now: Array, bent: Bent, speeds: Array, m: Method, n: int
 ) -> float:
     """Torques, tangents and normal loads of the laws at the motion of now; how far off they were [Nm]."""

@@ -26,7 +26,7 @@ OUT = "left the range"
 NUDGE = 1e-6
 
 
-class CurveProblem:
+class _CurveProblem:
     """Unknowns (x, p) of a bifurcation, scaled, along a second parameter r.
 
     ``family`` gives the problem over p for a value of r; ``kind`` is "fold" or "period doubling"; the curve is left
@@ -131,6 +131,6 @@ def bifurcation_curve(
     them.  Points are (x, p, r); their ``parameter`` is r.
     """
     scale = max(abs(second_span[0]), abs(second_span[1]))
-    problem = CurveProblem(family, event.event, event.z, second, scale, span)
+    problem = _CurveProblem(family, event.event, event.z, second, scale, span)
     start = np.append(event.z, second / scale)
     return both_ways(problem, start, second_span, replace(settings, terminal=(OUT,)))

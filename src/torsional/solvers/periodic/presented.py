@@ -50,7 +50,7 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
         analysis="periodic response",
         amplitude="complex 0-peak; order 0 is the mean",
         parameter=parameter,
-        parameter_unit=unit or data_unit(parameter),
+        parameter_unit=unit or _data_unit(parameter),
         main_order=explorer.base_order,
         highest_order=explorer.setting.highest_order,
         laws=list(explorer.setting.split.names),
@@ -59,7 +59,7 @@ def presented(explorer: Explorer, parameter: str, unit: str, stability: bool) ->
     )
 
 
-def data_unit(parameter: str) -> str:
+def _data_unit(parameter: str) -> str:
     """Unit of a parameter that has a name of its own."""
     return {"speed": "rad/s", "mean_torque": "Nm"}.get(parameter, "")
 

@@ -52,13 +52,13 @@ def stage_bases(split: Split, at: Turning = (0.0, 0.0)) -> StageBases:
     return StageBases(split.matrices[0], damping, stiffness, split.weights, laws, split.rigid_turning)
 
 
-def motion_at(harmonics: ComplexArray, tau: Array) -> Array:
+def _motion_at(harmonics: ComplexArray, tau: Array) -> Array:
     """Angles (m, times) of harmonics (m, H + 1) at τ."""
     turns = np.exp(1j * np.multiply.outer(np.arange(harmonics.shape[1]), tau))
     return np.asarray((harmonics @ turns).real)
 
 
-def crossings_along(problem: HarmonicProblem, points: Array) -> tuple[list[Array], list[IntArray]]:
+def _crossings_along(problem: HarmonicProblem, points: Array) -> tuple[list[Array], list[IntArray]]:
     """Angles τ of the crossings of each scaled point, ascending, and the stages (crossings, m) that follow them."""
     m, count = problem.connections, problem.harmonics
     forces = np.empty((len(points), m, count + 1), dtype=complex)
@@ -71,7 +71,7 @@ def crossings_along(problem: HarmonicProblem, points: Array) -> tuple[list[Array
     for i in range(len(points)):
         at = np.unique(np.concatenate([found[i, e, : int(number[i, e]), 0] for e in range(m)]))
         middles = at + 0.5 * np.diff(at, append=at[0] + 2 * np.pi) if at.size else np.zeros(1)
-        angles = motion_at(harmonics[i], middles)
+        angles = _motion_at(harmonics[i], middles)
         times.append(at)
         stages.append(np.stack([np.searchsorted(edge, own) for edge, own in zip(edges, angles, strict=True)], axis=1))
     return times, stages
@@ -89,7 +89,7 @@ def _multipliers(problem: HarmonicProblem, points: Array) -> ComplexArray:
     if not problem.setting.split.straight:
         found = [_sampled(problem, z, float(p)) for z, p in zip(points, pace, strict=True)]
         return ordered(np.linalg.eigvals(np.array(found)))
-    times, stages = crossings_along(problem, points)
+    times, stages = _crossings_along(problem, points)
     split = problem.setting.split
     at = [turning(split, float(v), float(p)) for v, p in zip(speed, pace, strict=True)]
     times = [t / p for t, p in zip(times, pace, strict=True)]
@@ -125,8 +125,8 @@ def _sampled(problem: HarmonicProblem, z: Array, pace: float) -> Array:
     at = turning(split, pace / problem.base_order, pace)
     harmonics = problem.harmonics_of(z)
     tau = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
-    angles = motion_at(harmonics, tau)
-    rates = motion_at(1j * pace * np.arange(harmonics.shape[1]) * harmonics, tau)
+    angles = _motion_at(harmonics, tau)
+    rates = _motion_at(1j * pace * np.arange(harmonics.shape[1]) * harmonics, tau)
     reference = np.stack([split.reference_stiffness, split.reference_damping], axis=1)
     if any(law.remembers for law in split.laws):
         laws = [(law.address, law.packed) for law in split.laws]

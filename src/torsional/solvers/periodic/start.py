@@ -37,7 +37,7 @@ def first_solution(problem: HarmonicProblem, value: float) -> Array:
             found = problem.at(guess, value)
             if found.converged:
                 return found.z
-    static = ", ".join(f"{angle:.4g} rad" for angle in static_angles(problem.frozen(value).setting, value))
+    static = ", ".join(f"{angle:.4g} rad" for angle in _static_angles(problem.frozen(value).setting, value))
     raise ModelError(
         "no periodic solution was found to start from",
         where=f"parameter {value:g}",
@@ -46,7 +46,7 @@ def first_solution(problem: HarmonicProblem, value: float) -> Array:
     )
 
 
-def static_angles(setting: Setting, value: float) -> Array:
+def _static_angles(setting: Setting, value: float) -> Array:
     """Mean relative angles (m,) [rad] under the mean torque alone, or under straight springs where none is found."""
     mean = setting.load.at(value)[:, setting.load.orders == 0].real.sum(axis=1)
     split = setting.split
@@ -65,7 +65,7 @@ def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The static state; and the same moved by a tenth of the scale, for one that lies exactly on a corner."""
     setting = problem.frozen(value).setting
     resting = problem.resting(value)
-    static = static_angles(setting, value) if resting is None else resting
+    static = _static_angles(setting, value) if resting is None else resting
     for shift in (0.0, 0.1, -0.1):
         at = np.zeros((static.size, 1), dtype=complex)
         at[:, 0] = static + shift * setting.angle_scale
@@ -75,7 +75,7 @@ def _linear(problem: HarmonicProblem, value: float) -> Iterator[Array]:
 def _shaken(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """Vibrations of the first harmonic about several means, large enough to pass a free range from end to end."""
     setting = problem.frozen(value).setting
-    static = static_angles(setting, value)
+    static = _static_angles(setting, value)
     widths = np.array([law.nearest_edge for law in setting.split.laws])
     for size in (1.2, 2.0, 4.0):
         for phase in np.exp(1j * np.pi * np.arange(4) / 2):
@@ -124,7 +124,7 @@ def _raised(problem: HarmonicProblem, value: float) -> Iterator[Array]:
     """The end of a continuation in the amplitude of the vibration, from the static state."""
     setting = problem.frozen(value).setting
     raised = HarmonicProblem(over_amplitude(problem, value), problem.base_order)
-    start = raised.point_of(static_angles(setting, value)[:, None].astype(complex), 0.0)
+    start = raised.point_of(_static_angles(setting, value)[:, None].astype(complex), 0.0)
     trace = followed(raised, start, 1, (0.0, 1.0), HOMOTOPY)
     if trace.points and trace.parameter[-1] == 1.0:
         yield _moved(trace.points[-1].z, problem, value)
@@ -137,7 +137,7 @@ def _lighter(problem: HarmonicProblem, value: float) -> Iterator[Array]:
         return
     for factor in (1.5, 3.0, 0.5, 0.1):
         moved = HarmonicProblem(between(problem, value, rest + factor * mean, rest + mean), problem.base_order)
-        static = static_angles(moved.setting, 0.0)[:, None].astype(complex)
+        static = _static_angles(moved.setting, 0.0)[:, None].astype(complex)
         trace = followed(moved, moved.point_of(static, 0.0), 1, (0.0, 1.0), HOMOTOPY)
         if trace.points and trace.parameter[-1] == 1.0:
             yield _moved(trace.points[-1].z, problem, value)

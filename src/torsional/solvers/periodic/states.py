@@ -25,7 +25,7 @@ class States:
     coordinates: ComplexArray
 
 
-def law_forces(problem: HarmonicProblem, points: Array) -> ComplexArray:
+def _law_forces(problem: HarmonicProblem, points: Array) -> ComplexArray:
     """Harmonics (points, m, H + 1) of the laws' torques [Nm] at scaled points."""
     forces = np.empty((len(points), problem.connections, problem.harmonics + 1), dtype=complex)
     places = np.empty((len(points), problem.connections, 0, 3))
@@ -49,7 +49,7 @@ def _states(problem: HarmonicProblem, points: Array) -> States:
     count = problem.harmonics
     value = points[:, -1] * problem.scale[-1]
     speed = value if setting.speed is None else np.full(len(points), setting.speed)
-    harmonics, force = problem.harmonics_of(points), law_forces(problem, points)
+    harmonics, force = problem.harmonics_of(points), _law_forces(problem, points)
     omega = np.multiply.outer(speed, problem.base_order * np.arange(count + 1))
     reference = split.reference_stiffness[:, None] + 1j * omega[:, None] * split.reference_damping[:, None]
     loads = driving(problem, value) - np.einsum("pmh,mn->phn", force - reference * harmonics, split.weights)

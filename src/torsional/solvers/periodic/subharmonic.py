@@ -93,7 +93,7 @@ class _Table:
     def fill(self, row: int, branches: list[Branch]) -> None:
         """Read every branch at the speeds of the grid."""
         for branch in branches:
-            stable = stable_stretches(branch)
+            stable = _stable_stretches(branch)
             guesses, columns, stretch = read(branch, self.speeds)
             np.add.at(self.solutions[row], columns, 1)
             np.add.at(self.stable[row], columns, stable[stretch])
@@ -148,7 +148,7 @@ def read(branch: Branch, speeds: Array) -> tuple[Array, IntArray, IntArray]:
     return guesses, columns, stretch
 
 
-def stable_stretches(branch: Branch) -> BoolArray:
+def _stable_stretches(branch: Branch) -> BoolArray:
     """Whether each stretch between two points is stable: told at a few points between two events, where it changes."""
     events = np.array([bool(point.event) for point in branch.points])
     edges = np.unique(np.concatenate([[0], np.flatnonzero(events), [len(events) - 1]]))

@@ -61,7 +61,7 @@ class Problem:
         if not reference_time > 0:
             found, allowed = f"{reference_time:g} s", "a time above zero, or infinite"
             raise ModelError("nothing follows so fast", where="reference_time", found=found, allowed=allowed)
-        profile = as_speed(only_speed(drives) if speed is None else speed)
+        profile = as_speed(_only_speed(drives) if speed is None else speed)
         if hold and grounded(system):  # springs to the ground carry the mean, as in periodic motion
             system.node_index(hold)
             hold = ""
@@ -127,7 +127,7 @@ class Problem:
         return found / 2 if not self.acting.cranks else 0.5
 
 
-def only_speed(drives: Drives) -> float:
+def _only_speed(drives: Drives) -> float:
     """The one speed that the drives say; raises ModelError for none and for several."""
     listed = drives if isinstance(drives, Sequence) else (drives,)
     said = {float(v) for drive in listed for v in np.atleast_1d(_speed_of(drive))}

@@ -84,10 +84,10 @@ def of_orders(orders: Array, torque: ComplexArray) -> Profile:
     pieces = round(above.max() / base) * PIECES
     angle = np.arange(pieces) * (2 * np.pi / base / pieces)
     turns = np.exp(1j * np.multiply.outer(angle, orders)) * torque
-    return hermite(turns.sum(axis=1).real, (turns * 1j * orders).sum(axis=1).real, 1.0 / base)
+    return _hermite(turns.sum(axis=1).real, (turns * 1j * orders).sum(axis=1).real, 1.0 / base)
 
 
-def hermite(values: Array, slopes: Array, period: float) -> Profile:
+def _hermite(values: Array, slopes: Array, period: float) -> Profile:
     """The profile through ``values`` with ``slopes`` by the angle [1/rad] at even angles of one period."""
     rise = slopes * (2 * np.pi * period / len(values))
     after, rise_after = np.roll(values, -1), np.roll(rise, -1)
@@ -105,4 +105,4 @@ def through(values: Array, period: float) -> Profile:
     """
     turns = np.fft.rfftfreq(len(values), 1.0 / len(values)) * (2 * np.pi / len(values))
     slopes = np.fft.irfft(np.fft.rfft(values) * (3j * np.sin(turns) / (2 + np.cos(turns))), len(values))
-    return hermite(values, slopes * (len(values) / (2 * np.pi * period)), period)
+    return _hermite(values, slopes * (len(values) / (2 * np.pi * period)), period)

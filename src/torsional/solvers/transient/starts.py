@@ -89,9 +89,9 @@ def starting(start: object, system: System, acting: Acting, hold: str, speed: fl
 def _found(start: object, system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """The state that a word or a motion means."""
     if isinstance(start, xr.Dataset):
-        return periodic_state(start, system, acting, hold)
+        return _periodic_state(start, system, acting, hold)
     if start is None or start == "equilibrium":
-        return equilibrated(system, acting, hold, speed)
+        return _equilibrated(system, acting, hold, speed)
     if start == "vibrating":
         return vibrating(system, acting, hold, speed)
     if start == "rest":
@@ -99,7 +99,7 @@ def _found(start: object, system: System, acting: Acting, hold: str, speed: floa
     raise ModelError("no start", where="start", found=repr(start)[:60], allowed=STARTS)
 
 
-def equilibrated(system: System, acting: Acting, hold: str, speed: float) -> MotionState:
+def _equilibrated(system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """Every spring twisted by the mean torques of the time zero, all nodes at one speed.
 
     A free line gets the rigid speed at which its drives let it go without drifting.
@@ -107,23 +107,23 @@ def equilibrated(system: System, acting: Acting, hold: str, speed: float) -> Mot
     moving = vibrating(system, acting, hold, speed)
     v = np.full(len(system.coordinates), float((system.M @ moving.speed).sum() / system.M.sum()))
     still = MotionState.at_rest(system)
-    angle = mean_angles(system, acting, hold)
+    angle = _mean_angles(system, acting, hold)
     return MotionState(0.0, angle, still.speed if grounded(system) else v, still.memory, still.integral)
 
 
-def mean_angles(system: System, acting: Acting, hold: str) -> Array:
+def _mean_angles(system: System, acting: Acting, hold: str) -> Array:
     """Coordinates [rad] in equilibrium under the mean torques of the time zero, the node ``hold`` at rest."""
-    load = mean_load(acting, len(system.coordinates))
+    load = _mean_load(acting, len(system.coordinates))
     if not np.abs(load).max(initial=0.0) > 0:
         return np.zeros(len(load))
     size = max((float(np.abs(source.row).max()) * _mean(source) for source in acting.sources), key=abs, default=0.0)
-    return angles_of(system, _balanced_twists(system, load, hold, abs(size)), hold)
+    return _angles_of(system, _balanced_twists(system, load, hold, abs(size)), hold)
 
 
 def vibrating(system: System, acting: Acting, hold: str, speed: float) -> MotionState:
     """The steady response to the drives at the crank angle zero, each law a spring and a damper of its own slopes in
     equilibrium: close to where a steady run ends."""
-    angle, still = mean_angles(system, acting, hold), MotionState.at_rest(system)
+    angle, still = _mean_angles(system, acting, hold), MotionState.at_rest(system)
     if speed <= 0:
         return MotionState(0.0, angle, still.speed, still.memory, still.integral)
     k, d = tangents(system, angle, speed)
@@ -141,7 +141,7 @@ def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, Com
     """Complex 0-peak torques on the coordinates by order of the frame's rotation, at the levels of the time zero."""
     found: dict[float, ComplexArray] = {}
     parts = [(s.row, s.profile, 1.0 if s.level is None else float(s.level.at(0.0)), s.phase) for s in acting.sources]
-    parts += [(c.row, crank_profile(c), speed**2, c.phase) for c in acting.cranks]
+    parts += [(c.row, _crank_profile(c), speed**2, c.phase) for c in acting.cranks]
     for row, profile, level, phase in parts:
         if profile is None or not level:
             continue
@@ -155,7 +155,7 @@ def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, Com
     return found
 
 
-def crank_profile(crank: Crank) -> Profile:
+def _crank_profile(crank: Crank) -> Profile:
     """Torque of a reciprocating mass at a steady speed over Ω² [kgm²]."""
     alpha = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
     shape = SliderCrank(crank.radius, crank.rod, crank.offset)
@@ -175,7 +175,7 @@ def tangents(system: System, angle: Array, speed: float) -> tuple[ComplexArray, 
     return np.asarray(k), d
 
 
-def mean_load(acting: Acting, coordinates: int) -> Array:
+def _mean_load(acting: Acting, coordinates: int) -> Array:
     """Mean torques on the coordinates at the time zero [Nm]."""
     load = np.zeros(coordinates)
     for source in acting.sources:
@@ -212,7 +212,7 @@ def _carrying(system: System) -> NDArray[np.bool_]:
     )
 
 
-def angles_of(system: System, twist: Array, hold: str) -> Array:
+def _angles_of(system: System, twist: Array, hold: str) -> Array:
     """Coordinates [rad] with given twists of the connections (smallest ones where friction alone says them), pendulums
     in the middle of their paths, the node ``hold`` at rest."""
     c = system.connections
@@ -234,7 +234,7 @@ def grounded(system: System) -> bool:
     return bool(np.abs(system.connections.weights[_carrying(system)].sum(axis=1)).max(initial=0.0) > 1e-9)
 
 
-def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str) -> MotionState:
+def _periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str) -> MotionState:
     """The state at crank angle zero of one motion: orders of node angles at one speed, or one point of a branch.
 
     Without order 0 the mean is the equilibrium.  Raises ModelError where several motions are left to choose from.
@@ -256,5 +256,5 @@ def periodic_state(found: xr.Dataset, system: System, acting: Acting, hold: str)
     q, v = (((values[:, at] / scale).sum(axis=0)).real for values in (angle, rate[:, None] * angle))
     state = MotionState.at_rest(system)
     if 0.0 not in order:
-        q = q + mean_angles(system, acting, hold)
+        q = q + _mean_angles(system, acting, hold)
     return MotionState(0.0, np.asarray(q), np.asarray(v), state.memory, state.integral)

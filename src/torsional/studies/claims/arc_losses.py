@@ -90,7 +90,7 @@ def looped(model: Model, rpm: float, swing: float, middle: float = 0.0) -> Loop:
     return Loop.of(loops, swing, frequency)
 
 
-def long_looped(rpm: float, swing: float, middle: float) -> Loop:
+def _long_looped(rpm: float, swing: float, middle: float) -> Loop:
     """The loop of long arcs at the pace of the second order, that of four cylinders."""
     frequency = 2.0 * rpm * RPM / (2.0 * np.pi)
     loops = hysteresis(long_arcs(), "primary", "secondary", rpm * RPM, swing, rate=4 * swing * frequency, centre=middle)
@@ -180,7 +180,7 @@ def uncertain(model: Model, motion: Driven) -> dict[str, Figure]:
         figures[f"friction times {times:g}, start-up and driving: loss factor [-]"] = floats(
             [loop.loss_factor for loop in pair]
         )
-    long = long_looped(*LONG_START), long_looped(*LONG_DRIVING)
+    long = _long_looped(*LONG_START), _long_looped(*LONG_DRIVING)
     small = [looped(model, DRIVING[2][0], np.radians(swing), motion.middle).loss_factor for swing in (0.1, 0.03, 0.01)]
     return figures | {
         "long arcs, ±40° at 200 rpm and ±0.5° about 36° at 2000 rpm: loss per vibration [J]": floats(

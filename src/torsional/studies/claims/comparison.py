@@ -37,7 +37,7 @@ LIGHT = 0.2
 """Clutch damping of a variant that shows what the clutch mode can do, over the shipped one."""
 
 
-def input_map(model: Model, speed: Array, torque: Array, orders: Array) -> xr.DataArray:
+def _input_map(model: Model, speed: Array, torque: Array, orders: Array) -> xr.DataArray:
     """Acceleration orders at the gearbox input over gear, torque and speed, complex 0-peak; NaN beyond full load."""
     found = response_map(model, speed, torque, orders=orders, nodes=[model.landmarks.input], elements=[])
     inside = found.within_full_load.astype(bool)
@@ -54,8 +54,8 @@ def input_map(model: Model, speed: Array, torque: Array, orders: Array) -> xr.Da
 def a10(trucks: Trucks) -> Finding:
     speed, torque = speeds(trucks.smf, STEP), trucks.smf.torques(TORQUES)[1:]
     order = np.array([main_order(trucks.smf)])
-    double = input_map(trucks.dmf, speed, torque, order).isel(order=0)
-    ratio = abs(double) / abs(input_map(trucks.smf, speed, torque, order).isel(order=0))
+    double = _input_map(trucks.dmf, speed, torque, order).isel(order=0)
+    ratio = abs(double) / abs(_input_map(trucks.smf, speed, torque, order).isel(order=0))
     light = _ratio(lightly(trucks.dmf), lightly(trucks.smf), speed, torque, order)
     cycle = _ratio(trucks.dmf, trucks.smf, speed[::2], torque[1::2], HALF_ORDERS)
     figures: dict[str, Figure] = {
@@ -87,7 +87,7 @@ def lightly(model: Model) -> Model:
 
 def _ratio(above: Model, below: Model, speed: Array, torque: Array, orders: Array) -> xr.DataArray:
     """Swing of the input acceleration of one model over that of another."""
-    pair = [swing(input_map(model, speed, torque, orders), 360) for model in (above, below)]
+    pair = [swing(_input_map(model, speed, torque, orders), 360) for model in (above, below)]
     return pair[0] / pair[1]
 
 

@@ -36,7 +36,7 @@ def crossing(model: Model, speed: Array) -> BoolArray:
     return np.asarray(np.abs(own) < CROSSING * np.median(np.abs(own)))
 
 
-def orders_at(model: Model, speed: Array) -> xr.DataArray:
+def _orders_at(model: Model, speed: Array) -> xr.DataArray:
     """Torque orders of the gearbox input shaft at full load [Nm], complex 0-peak, (speed, order)."""
     found: xr.DataArray = responded(model, speed, model.full_load(speed), orders=HALF_ORDERS).torque
     return found.sel(element=input_shaft(model))
@@ -44,7 +44,7 @@ def orders_at(model: Model, speed: Array) -> xr.DataArray:
 
 def share(model: Model, speed: Array) -> Array:
     """Share of the firing order in the mean square of that torque."""
-    return np.asarray(order_share(orders_at(model, speed), main_order(model)).values)
+    return np.asarray(order_share(_orders_at(model, speed), main_order(model)).values)
 
 
 @claim(
@@ -59,7 +59,7 @@ def a1(trucks: Trucks) -> Finding:
     model, speed = trucks.smf, speeds(trucks.smf, STEP)
     away = ~crossing(model, speed)
     flexible, rigid, double = (share(m, speed) for m in (model, lumped(model), trucks.dmf))
-    power = abs(orders_at(model, speed)) ** 2
+    power = abs(_orders_at(model, speed)) ** 2
     short = away & (flexible <= 0.8)
     figures: dict[str, Figure] = {
         "lowest share away from crossings [-]": float(flexible[away].min()),
@@ -102,7 +102,7 @@ def resonance(model: Model) -> float:
     return float(found.order_speed[mode_of(found, model.landmarks.clutch)])
 
 
-def first_crank_mode(model: Model) -> float:
+def _first_crank_mode(model: Model) -> float:
     """Order speed [rad/s] of the lowest mode with most of its elastic energy in the engine."""
     rigid = {stamp.name for stamp in lumped(model).powertrain().stamps}
     found = modes(model)
@@ -128,7 +128,7 @@ def a13(trucks: Trucks) -> Finding:
         order, cycle = differences(model, speed)
         near = np.abs(speed / resonance(model) - 1) < NEAR
         figures |= _sides(name, speed, near, order, cycle)
-        figures[f"{name}: first crankshaft mode over clutch mode [-]"] = first_crank_mode(model) / resonance(model)
+        figures[f"{name}: first crankshaft mode over clutch mode [-]"] = _first_crank_mode(model) / resonance(model)
         good &= bool(np.abs(order[near]).max() > 0.1 and np.abs(order[~near]).max() < 0.05)
         told |= {f"{name.lower()}_order": order, f"{name.lower()}_swing": cycle}
     reason = (

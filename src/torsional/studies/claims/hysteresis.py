@@ -57,7 +57,7 @@ def truck_loops(model: Model, speed: Array = SPEEDS, sweep: Array = TRUCK_SWEEPS
     return model_hysteresis(model, speed, sweep)
 
 
-def long_loops(speed: Array = SPEEDS, sweep: Array = LONG_SWEEPS) -> xr.Dataset:
+def _long_loops(speed: Array = SPEEDS, sweep: Array = LONG_SWEEPS) -> xr.Dataset:
     """Loops of the flywheel with long arc springs."""
     return hysteresis(long_arcs(), "primary", "secondary", speed, sweep)
 
@@ -99,7 +99,7 @@ def _listed(values: Array) -> str:
     "slide at standstill",
 )
 def f3(trucks: Trucks) -> Finding:
-    truck, long = truck_loops(trucks.arc_spring), long_loops()
+    truck, long = truck_loops(trucks.arc_spring), _long_loops()
     good = True
     for loops in (truck, long):
         good &= rising(loops.loss.values[:, -1]) and rising(loops.stiffness.values[:, -1]) and stuck(loops)

@@ -161,7 +161,7 @@ def b6(trucks: Trucks) -> Finding:
         }
         steps = pulsed(idle, torque)
         figures |= {f"by time steps, {name}": value for name, value in told(idle, *steps).items()}
-        good = good and count > 1 and loud > 2 * quiet and as_said(idle, *steps)
+        good = good and count > 1 and loud > 2 * quiet and _as_said(idle, *steps)
     figures |= {f"{c:g} Nms/rad: lashes with sustained vibration [deg]": _met(told) for c, told in region.items()}
     return Finding(good and after is not None, CONDITION, figures, _reason(region), _drawn(idle, before, after))
 
@@ -189,7 +189,7 @@ def told(idle: Idle, before: xr.Dataset, after: xr.Dataset, count: int) -> dict[
     return figures | {"after: order of the slowest part [-]": slowest}
 
 
-def as_said(idle: Idle, before: xr.Dataset, after: xr.Dataset, count: int) -> bool:
+def _as_said(idle: Idle, before: xr.Dataset, after: xr.Dataset, count: int) -> bool:
     """Whether the springs are met after the pulse alone, and what the input does is as the claim has it."""
     marks = idle.model.landmarks
     free, met = (np.abs(reach_of(run, marks.springs[0])).max() for run in (before, after))

@@ -138,7 +138,7 @@ def e2(trucks: Trucks) -> Finding:
             figures[f"error {at}, radius 1, contact times of at least half a step [%]"] = _percent(
                 place.errors(1.0, guard=True)
             )
-    figures |= closed_and_varied(trucks.dmf)
+    figures |= _closed_and_varied(trucks.dmf)
     good = min(gains) >= SEVERAL
     reason = REASON if good else "the step grows by less than three times at some point"
     drawn = sweep("E2", "step", STEPS, "time", **curves)
@@ -153,7 +153,7 @@ def told(at: str, table: Mapping[float, Array]) -> dict[str, Figure]:
     return figures | {f"gain {at} [-]": growth(table)}
 
 
-def closed_and_varied(model: Model) -> dict[str, Figure]:
+def _closed_and_varied(model: Model) -> dict[str, Figure]:
     """Gains where the springs stay closed, and with other designs."""
     places = {f"at {CLOSED[0]:g} rpm, {CLOSED[1]:g} Nm, springs closed": Rattle(model, *CLOSED)}
     places |= {name: Rattle(model, *MIDDLE, design) for name, design in VARIED.items()}

@@ -28,7 +28,7 @@ CRITICAL = 650 * RPM
 )
 def c4(trucks: Trucks) -> Finding:
     p, n = Parts.of(trucks.psva), main_order(trucks.psva)
-    worst = largest_difference(trucks)
+    worst = _largest_difference(trucks)
     alone, split = (p.planets_for(n * CRITICAL, quotient) for quotient in (1.0, p.r))
     same = p.planets_for(p.cancellation(), 1.0)
     figures: dict[str, Figure] = {
@@ -43,7 +43,7 @@ def c4(trucks: Trucks) -> Finding:
     return Finding(worst < 1e-10 and alone > split, condition, figures)
 
 
-def largest_difference(trucks: Trucks) -> float:
+def _largest_difference(trucks: Trucks) -> float:
     """Largest relative difference of the two models' angles at quotient 1 at the gearbox input."""
     angles = [responded(m, speeds(trucks.psva), orders=HALF_ORDERS) for m in at_quotient_one(trucks)]
     first, second = (a.angle.sel(node=trucks.psva.landmarks.input).values for a in angles)

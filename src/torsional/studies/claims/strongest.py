@@ -52,7 +52,7 @@ class Search:
             explorer = over_torque(self.model, speed, TORQUES, highest_order=HIGHEST_ORDER)
             best = np.zeros((2, 4))
             for branch in doubled(explorer):
-                found = crests(branch, amplitudes(self.model, branch, self.order))
+                found = _crests(branch, amplitudes(self.model, branch, self.order))
                 best = np.where(found[0] > best[0], found, best)
             self.seen[speed] = best
         return self.seen[speed]
@@ -89,7 +89,7 @@ def crest(at: Array, values: Array) -> float:
     return float(at[1] - 0.5 * slope / curved)
 
 
-def crests(branch: Branch, values: Array) -> Array:
+def _crests(branch: Branch, values: Array) -> Array:
     """Largest values (q,) along a branch between its points, and the parameter there, as (2, q)."""
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(branch.scaled, axis=0), axis=1))])
     kept = np.concatenate([[True], np.diff(way) > 1e-9])
@@ -113,7 +113,7 @@ def onset(build: Callable[[float], Model], low: float, high: float) -> float:
 
         def least(speed: float) -> float:
             explorer = over_torque(model, speed, TORQUES, depth=0, highest_order=HIGHEST_ORDER)
-            lowest = [-crests(b, -doubling_margin(b)[None])[0, 0] for b in explorer.branches]
+            lowest = [-_crests(b, -doubling_margin(b)[None])[0, 0] for b in explorer.branches]
             return float(min(lowest))
 
         look = [least(float(speed)) for speed in FIRST_LOOK]

@@ -55,10 +55,10 @@ BELOW = (
 ASKED = (900.0, 1000.0, 1100.0, 1200.0, 1300.0, 1400.0, 1500.0)
 
 
-def straightness(x: Array, y: Array) -> float:
+def _straightness(x: Array, y: Array) -> float:
     """R² of a straight line through points.
 
-    >>> straightness(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
+    >>> _straightness(np.array([0.0, 1.0, 2.0]), np.array([1.0, 3.0, 5.0]))
     1.0
     """
     return float(np.corrcoef(x, y)[0, 1] ** 2)
@@ -153,10 +153,10 @@ def b2(trucks: Trucks) -> Finding:
         figures[f"{name} varied: differences [kNm/rad]"] = floats(differences / 1e3)
         for quantity, told in NAMES.items():
             figures[f"{name} varied: {told} [{UNITS[quantity]}]"] = floats(sizes[:, quantity])
-            figures[f"{name} varied: {told}, R²"] = straightness(differences, sizes[:, quantity])
+            figures[f"{name} varied: {told}, R²"] = _straightness(differences, sizes[:, quantity])
     figures |= _lightly(found["light"]) | _onsets(trucks.two_stage)
     figures["largest twist over the stop's [-]"] = max(one.travel for one in (*found["k2"], *found["k1"]))
-    straight = [straightness(x, y[:, q]) for x, y, _ in (table(found[n]) for n in ("k2", "k1")) for q in JUDGED]
+    straight = [_straightness(x, y[:, q]) for x, y, _ in (table(found[n]) for n in ("k2", "k1")) for q in JUDGED]
     return Finding(min(straight) > 0.97, CONDITION, figures, SATURATES, _swept("B2", found["k2"], 1))
 
 
@@ -165,7 +165,7 @@ def _lightly(found: tuple[Case, ...]) -> dict[str, Figure]:
     told: dict[str, Figure] = {f"{LIGHT:g} Nms/rad, k2 varied: differences [kNm/rad]": floats(differences / 1e3)}
     for quantity, name in NAMES.items():
         told[f"{LIGHT:g} Nms/rad: {name} [{UNITS[quantity]}]"] = floats(sizes[:, quantity])
-        told[f"{LIGHT:g} Nms/rad: {name}, R²"] = straightness(differences, sizes[:, quantity])
+        told[f"{LIGHT:g} Nms/rad: {name}, R²"] = _straightness(differences, sizes[:, quantity])
     return told
 
 
@@ -228,9 +228,9 @@ def b4(trucks: Trucks) -> Finding:
         figures[f"{name} varied: differences [kNm/rad]"] = floats(differences / 1e3)
         figures[f"{name} varied: mean torque [Nm]"] = floats(torques[:, SPRING])
         figures[f"{name} varied: slope [Nm per kNm/rad]"] = float(slope)
-        figures |= {f"{name} varied: R² for the {NAMES[q]}": straightness(differences, torques[:, q]) for q in NAMES}
-        straight.append(straightness(differences, torques[:, SPRING]))
+        figures |= {f"{name} varied: R² for the {NAMES[q]}": _straightness(differences, torques[:, q]) for q in NAMES}
+        straight.append(_straightness(differences, torques[:, SPRING]))
     light = table(found["light"])
     figures[f"{LIGHT:g} Nms/rad, k2 varied: mean torque [Nm]"] = floats(light[2][:, SPRING])
-    figures[f"{LIGHT:g} Nms/rad, k2 varied: R²"] = straightness(light[0], light[2][:, SPRING])
+    figures[f"{LIGHT:g} Nms/rad, k2 varied: R²"] = _straightness(light[0], light[2][:, SPRING])
     return Finding(min(straight) > 0.95, CONDITION, figures, dataset=_swept("B4", found["k2"], 2))

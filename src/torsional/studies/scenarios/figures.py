@@ -22,7 +22,7 @@ def read_off(run: xr.Dataset, laws: Mapping[str, Law | None]) -> xr.Dataset:
 
     ``laws``: of the elements by name; one that is missing has no stop.
     """
-    stops = np.array([stop_angles(laws.get(str(name))) for name in run.element.values]).reshape(-1, 2)
+    stops = np.array([_stop_angles(laws.get(str(name))) for name in run.element.values]).reshape(-1, 2)
     twist, torque = (run[name].transpose("time", "element") for name in ("twist", "torque"))
     at = np.abs(torque.values).argmax(axis=0)
     found = {
@@ -38,11 +38,11 @@ def read_off(run: xr.Dataset, laws: Mapping[str, Law | None]) -> xr.Dataset:
     return run.assign({name: ("element", values, _attrs(quantity)) for name, (values, quantity) in found.items()})
 
 
-def stop_angles(law: Law | None) -> tuple[float, float]:
+def _stop_angles(law: Law | None) -> tuple[float, float]:
     """The angles [rad] of the stops for negative and positive torque; not a number where there is none.
 
     >>> from torsional.laws import Hinges
-    >>> stop_angles(Hinges.staged([(1000.0, 1e4)], stop_stiffness=1e6))
+    >>> _stop_angles(Hinges.staged([(1000.0, 1e4)], stop_stiffness=1e6))
     (-0.1, 0.1)
     """
     listed: Sequence[float] = getattr(law, "stops", ())

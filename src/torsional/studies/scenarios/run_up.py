@@ -41,7 +41,7 @@ def run_up(
     The mean ``speed`` [rad/s] stays or follows a profile, whatever torque that takes; cylinders burn over the crank's
     own angle, their masses move exactly, friction and pressures are those at the middle speed.  It begins in steady
     vibration, the mean torque is taken up where the model's load is.  What the vibration loses in dampers
-    a slow drive at the load makes good, see `made_good`.  Raises ModelError for a torque that rests on a stop, and for
+    a slow drive at the load makes good, see `_made_good`.  Raises ModelError for a torque that rests on a stop, and for
     a duration or a step that is none.
 
     Dataset of `transient` with what `torsional.studies.scenarios.figures.read_off` adds.
@@ -56,7 +56,7 @@ def run_up(
     plan = Plan(
         title="",
         line=line,
-        drives=(CylinderTorques.of(model, sum(turning.range) / 2, torque), made_good(line, turning, load)),
+        drives=(CylinderTorques.of(model, sum(turning.range) / 2, torque), _made_good(line, turning, load)),
         speed=turning,
         duration=duration,
         crank=lines.crank_of(model),
@@ -72,7 +72,7 @@ def run_up(
     return run_plan(plan, progress)
 
 
-def made_good(line: Powertrain, speed: SpeedProfile, node: str) -> Governor:
+def _made_good(line: Powertrain, speed: SpeedProfile, node: str) -> Governor:
     """The ideal drive at a ``node``: the speed of a ``line`` stays what it shall be [rad/s] in the mean.
 
     Constant mean torques do not keep it: what a vibration loses in dampers is taken from the rotation, which slows down

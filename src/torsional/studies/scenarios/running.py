@@ -56,14 +56,14 @@ def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     plan, again = _released(plan, run)
     if again:
         run, turning = moved(plan, step, max(OUTPUT, step), progress)
-    run = from_zero(run)
+    run = _from_zero(run)
     if plan.step is not None and "refined" in run.attrs:
         told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
         raise ModelError("the step is too large for this line", where="step", **told, remedy="or leave the key out")
     named = {"title": plan.title, "gear": plan.gear, "crank": plan.crank}
     listed = {"springs": plan.springs, "watched": plan.watched, "looked_at": plan.nodes}
     told = {key: json.dumps(names) for key, names in listed.items()}
-    run = with_tabs(run, plan)
+    run = _with_tabs(run, plan)
     systems = [own.system for own in turning]
     figures = with_figures(run, systems, (*plan.springs, *plan.watched), plan.inner)
     whole = phased(scheduled(figures, plan.shown), plan.phases, plan.crank)
@@ -95,7 +95,7 @@ def _refuse_coarse(plan: Plan) -> None:
         raise ModelError("the step is too large", where="step", **told)
 
 
-def from_zero(run: xr.Dataset) -> xr.Dataset:
+def _from_zero(run: xr.Dataset) -> xr.Dataset:
     """What happened from the time zero on, energies counted from there; KeyboardInterrupt where it was not reached."""
     late = run.time.values >= -0.25 * float(run.attrs["step"])
     if not late.any():
@@ -107,7 +107,7 @@ def from_zero(run: xr.Dataset) -> xr.Dataset:
     return kept.assign({name: (all_ - all_.isel(time=0)).assign_attrs(all_.attrs) for name, all_ in counted.items()})
 
 
-def with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
+def _with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
     """The run with what the tabs of a detailed dual mass flywheel carry counted as its torque, beside its end stop."""
     inner = [str(name) for name in run.element.values if name in plan.inner]
     if not any(name.endswith(tuple(TABS)) for name in inner) or len(plan.springs) != 1:

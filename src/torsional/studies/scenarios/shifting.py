@@ -50,12 +50,12 @@ class Shift:
 
 def gear_shift(block: GearShift, model: Model) -> Plan:
     """Three lines one after the other; heat follows the torques asked for and, in neutral, the new gear's speed."""
-    speed, old, new = sizes.speed(model, block.speed, MIDDLE), *gears_of(block, model)
+    speed, old, new = sizes.speed(model, block.speed, MIDDLE), *_gears_of(block, model)
     after = sizes.torque(model, block.torque, 0.4, "torque")
     before = after if block.before is None else block.before
     for gear, key, torque in ((old, "before", before), (new, "torque", after)):
         within_stop(model, gear, **{key: torque})
-    shift = lines_of(block, model, old, new, speed)
+    shift = _lines_of(block, model, old, new, speed)
     if before > shift.capacity:
         told = {"found": show(before, "torque"), "allowed": f"up to {show(shift.capacity, 'torque')}"}
         raise ModelError(
@@ -64,22 +64,22 @@ def gear_shift(block: GearShift, model: Model) -> Plan:
     return Plan(
         **in_gear(block, model, shift.old, f"{old} to {new}", lines.LININGS),
         nodes=tuple(node for node in (model.landmarks.input, lines.load_of(model)) if node),
-        drives=drives_of(block, model, speed, before, after),
+        drives=_drives_of(block, model, speed, before, after),
         speed=speed,
         start="vibrating",
         stuck=(lines.LININGS,),
-        levels={"clutch": clutch_over(block), SYNCHRONISER: cones_over(block)},
+        levels={"clutch": _clutch_over(block), SYNCHRONISER: _cones_over(block)},
         shown={
             "engine torque asked for": (_torque_over(block, before, 0.0, after), "torque"),
-            "clutch capacity": (_times(clutch_over(block), shift.capacity), "torque"),
-            "synchroniser": (_times(cones_over(block), shift.cones), "torque"),
+            "clutch capacity": (_times(_clutch_over(block), shift.capacity), "torque"),
+            "synchroniser": (_times(_cones_over(block), shift.cones), "torque"),
         },
         later=(Span(block.synchroniser.begins, shift.neutral), Span(_engaged(block), shift.new)),
-        phases=phases_of(block, old, new),
+        phases=_phases_of(block, old, new),
     )
 
 
-def gears_of(block: GearShift, model: Model) -> tuple[str, str]:
+def _gears_of(block: GearShift, model: Model) -> tuple[str, str]:
     """Names of the old and the new gear; ModelError where they are none, or one."""
     if len(model.gears) < 2:
         raise ModelError("a shift needs two gears", where="gears", found=f"{len(model.gears)}")
@@ -90,7 +90,7 @@ def gears_of(block: GearShift, model: Model) -> tuple[str, str]:
     return old, new
 
 
-def lines_of(block: GearShift, model: Model, old: str, new: str, speed: float) -> Shift:
+def _lines_of(block: GearShift, model: Model, old: str, new: str, speed: float) -> Shift:
     """The lines of a shift; ModelError where nothing in the new gear can be synchronised, or the engine over-speeds."""
     load = lines.load_of(model)
     first, _, capacity = lines.with_linings(lines.line_of(model, old), model, block.clutch)
@@ -101,8 +101,8 @@ def lines_of(block: GearShift, model: Model, old: str, new: str, speed: float) -
     ratio = first.speed_ratio(load) / last.speed_ratio(load)
     if ratio <= 0:
         raise ModelError("the vehicle would turn the engine backwards", where="to_gear", found=f"'{new}'")
-    within_range(model, speed * ratio, new)
-    name, pair = meshing_in(model, new, last)
+    _within_range(model, speed * ratio, new)
+    name, pair = _meshing_in(model, new, last)
     cones = block.synchroniser.torque or _enough(block, last, name, pair, speed * (1.0 - ratio))
     values = {"stiffness": cones / STUCK, "damping": DAMPED * cones / STUCK}
     rubbing = Synchroniser(pair.a, pair.b, pair.ratio, cones, level=SYNCHRONISER, **values)
@@ -111,7 +111,7 @@ def lines_of(block: GearShift, model: Model, old: str, new: str, speed: float) -
     return Shift(first, neutral, last, ratio, capacity, cones)
 
 
-def within_range(model: Model, speed: float, gear: str) -> None:
+def _within_range(model: Model, speed: float, gear: str) -> None:
     """Refuse a gear in which the engine would turn slower than idle, or faster than it runs."""
     low, high = model.operation.idle, model.operation.speed[1]
     if not low * (1 - ROUNDING) <= speed <= high * (1 + ROUNDING):
@@ -120,7 +120,7 @@ def within_range(model: Model, speed: float, gear: str) -> None:
         raise ModelError(problem, where="to_gear", **told, remedy="name a gear closer by, or another speed before")
 
 
-def meshing_in(model: Model, gear: str, line: Powertrain) -> tuple[str, GearPair]:
+def _meshing_in(model: Model, gear: str, line: Powertrain) -> tuple[str, GearPair]:
     """The gear pair of a gear without which its line falls apart between engine and vehicle."""
     crank, load = lines.crank_of(model), lines.load_of(model)
     for name, part in model.gears[gear].components.items():
@@ -146,7 +146,7 @@ def _inertia(line: Powertrain, nodes: set[str]) -> float:
     return sum(mass.inertia * speed**2 for mass, speed in zip(masses, turning, strict=True))
 
 
-def drives_of(block: GearShift, model: Model, speed: float, before: float, after: float) -> tuple[Drive, ...]:
+def _drives_of(block: GearShift, model: Model, speed: float, before: float, after: float) -> tuple[Drive, ...]:
     """Engine, road, what keeps the line from accelerating before the time zero, and the governor of neutral."""
     crank, load = lines.crank_of(model), lines.load_of(model)
     least = max(before, after, 1.0)
@@ -180,14 +180,14 @@ def _heat_over(block: GearShift, before: float, none: float, after: float) -> Kn
     return (*times[:2], begin, begin, end, end, *times[2:]), (*values[:2], none, 0.0, 0.0, none, *values[2:])
 
 
-def clutch_over(block: GearShift) -> Knots:
+def _clutch_over(block: GearShift) -> Knots:
     """Share of its capacity over time."""
     clutch = block.clutch
     times = (clutch.opens, clutch.opens + clutch.opens_within, clutch.engages, clutch.engages + clutch.within)
     return times, (1.0, 0.0, 0.0, 1.0)
 
 
-def cones_over(block: GearShift) -> Knots:
+def _cones_over(block: GearShift) -> Knots:
     """Share of the synchroniser's torque over time."""
     begin, end = block.synchroniser.begins, _engaged(block)
     return (begin, begin + PRESSED * (end - begin), end, end), (0.0, 1.0, 1.0, 0.0)
@@ -197,7 +197,7 @@ def _engaged(block: GearShift) -> float:
     return block.synchroniser.begins + block.synchroniser.within
 
 
-def phases_of(block: GearShift, old: str, new: str) -> tuple[Phase, ...]:
+def _phases_of(block: GearShift, old: str, new: str) -> tuple[Phase, ...]:
     """What happens, one after the other."""
     clutch, begin, end = block.clutch, block.synchroniser.begins, _engaged(block)
     named = {

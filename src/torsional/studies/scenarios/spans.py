@@ -32,7 +32,7 @@ def moved(plan: Plan, step: float, output: float, progress: Progress | None) -> 
         if runs[-1].attrs["status"] != COMPLETE:
             break
         state = MotionState.ending(runs[-1], own.system)
-    return (as_one(runs, turning) if plan.later else runs[0]), turning
+    return (_as_one(runs, turning) if plan.later else runs[0]), turning
 
 
 def _one(
@@ -58,7 +58,7 @@ def _within(progress: Progress | None, whole: float) -> Progress | None:
     return None if progress is None else lambda at, end, pace: progress(at, whole, pace)
 
 
-def as_one(runs: Sequence[xr.Dataset], turning: Sequence[Turning]) -> xr.Dataset:
+def _as_one(runs: Sequence[xr.Dataset], turning: Sequence[Turning]) -> xr.Dataset:
     """Runs that follow one another as one, angles counted from the last line's mean rotation, energies those of the
     whole speeds; an element that a line does not have carries nothing there."""
     last = turning[len(runs) - 1]
