@@ -11,10 +11,10 @@ from scipy.special import mathieu_a, mathieu_b
 from tests.validation.periodic_reference import Case, Stages, dmf12, flow, time_steady, two_stage
 
 from torsional.errors import ModelError
-from torsional.numerics.floquet.multipliers import merged_crossings, monodromy, multipliers, ordered
 from torsional.numerics.floquet.sampled import monodromy_sampled
 from torsional.numerics.linear.exponential import exponential, exponential_less_one
 from torsional.numerics.piecewise.basis import StageBases, coordinates
+from torsional.numerics.piecewise.monodromy import merged_crossings, monodromy, multipliers, ordered
 
 TWO_PI = 2.0 * np.pi
 TWO_STAGES = [1.0, 1.0, 1.0, 1.0]  # f = x for x ≤ 1, 1 + 2 (x − 1) above

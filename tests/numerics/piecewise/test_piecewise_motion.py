@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from tests.validation.periodic_reference import Case, Stages, dmf12, flow
 
 from torsional.errors import ModelError
-from torsional.numerics.floquet.multipliers import ordered
 from torsional.numerics.piecewise.basis import StageBases
+from torsional.numerics.piecewise.monodromy import ordered
 from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.units import RPM
 

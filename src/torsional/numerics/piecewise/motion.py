@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
-from torsional.numerics.floquet.multipliers import monodromy
 from torsional.numerics.piecewise.basis import StageBases
 from torsional.numerics.piecewise.march import Tables, equations, march, new_tables
+from torsional.numerics.piecewise.monodromy import monodromy
 from torsional.numerics.piecewise.series import Motion, Record
 
 SAMPLES = 256  # a period of the base frequency

@@ -10,10 +10,10 @@ import numpy as np
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.balance.forces import forces_along
 from torsional.numerics.continuation.following import Point
-from torsional.numerics.floquet.multipliers import multipliers, ordered
 from torsional.numerics.floquet.remembering import monodromy_remembering
 from torsional.numerics.floquet.sampled import monodromy_sampled
 from torsional.numerics.piecewise.basis import Coordinates, StageBases, coordinates
+from torsional.numerics.piecewise.monodromy import multipliers, ordered
 from torsional.numerics.piecewise.motion import PiecewiseMotion
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem

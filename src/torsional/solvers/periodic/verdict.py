@@ -15,7 +15,7 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.continuation.following import Point
-from torsional.numerics.floquet.multipliers import ordered
+from torsional.numerics.piecewise.monodromy import ordered
 from torsional.solvers.periodic.problem import BoolArray, HarmonicProblem
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers, exact_motion
 from torsional.solvers.periodic.states import states
