@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.numerics.modes.counting import count_below
 from tests.random_models import Network, random_network
 
 from torsional.absorbers import (
@@ -19,7 +20,6 @@ from torsional.absorbers import (
 from torsional.components import Component, Coupling, GearPair, Inertia, Shaft
 from torsional.engine import Excitation
 from torsional.laws import Hinges
-from torsional.numerics.modes.undamped import count_below
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
 from torsional.solvers.harmonic import harmonic_response

@@ -14,7 +14,7 @@ from torsional.errors import ModelError
 from torsional.numerics.floquet.sampled import monodromy_sampled
 from torsional.numerics.linear.exponential import exponential, exponential_less_one
 from torsional.numerics.piecewise.basis import StageBases, coordinates
-from torsional.numerics.piecewise.monodromy import merged_crossings, monodromy, multipliers, ordered
+from torsional.numerics.piecewise.monodromy import monodromy, multipliers, ordered
 
 TWO_PI = 2.0 * np.pi
 TWO_STAGES = [1.0, 1.0, 1.0, 1.0]  # f = x for x ≤ 1, 1 + 2 (x − 1) above
@@ -251,16 +251,6 @@ def test_a_batch_is_its_points() -> None:
     for i, period in enumerate(periods):
         expected = ordered(np.linalg.eigvals(monodromy(bases, times[i], stages[i], period)))
         np.testing.assert_allclose(np.abs(found[i]), np.abs(expected), atol=1e-11)
-
-
-def test_crossings_by_connection_are_merged() -> None:
-    bases = random_case(0)
-    found = [[(4.0, 0, 0.0), (1.0, 0, 1.0)], [(2.0, 1, 0.0), (5.0, 1, 1.0)]]
-    times, stages = merged_crossings(bases, found, [0.0, 0.0], TWO_PI)
-    np.testing.assert_allclose(times, [1.0, 2.0, 4.0, 5.0])
-    assert stages.tolist() == [[2, 1], [2, 0], [1, 0], [1, 1]]
-    times, stages = merged_crossings(bases, [[], []], [0.6, -1.0], TWO_PI)
-    assert times.size == 0 and stages.tolist() == [[2, 0]]
 
 
 def test_crossings_out_of_order_are_refused() -> None:

@@ -100,21 +100,6 @@ def tape_of(supports: Sequence[set[int]], n: int) -> Tape:
     )
 
 
-def slot_of(tape: Tape, i: int, j: int) -> int:
-    """The slot of entry (i, j) of the matrix, in coordinates; raises ValueError for one outside the pattern.
-
-    >>> [slot_of(tape_of([{0, 1}, {1, 2}], 3), *pair) for pair in ((1, 1), (0, 1), (2, 1))]
-    [2, 3, 4]
-    """
-    p, r = sorted((int(np.flatnonzero(tape.node == i)[0]), int(np.flatnonzero(tape.node == j)[0])))
-    if p == r:
-        return p
-    found = np.flatnonzero((tape.couplings[COLUMN] == p) & (tape.couplings[ROW] == r))
-    if not found.size:
-        raise ValueError(f"({i}, {j}) is outside the pattern")
-    return int(tape.node.size + found[0])
-
-
 @uncounted()
 def factor(tape: Tape, matrix: Array, lower: Array, inverse: Array) -> bool:
     """LDLᵀ of ``matrix`` (slots,), which is used up: ``lower`` (couplings,) and ``inverse`` (n,) = 1/D.

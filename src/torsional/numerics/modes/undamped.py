@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import ldl
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
@@ -24,15 +23,6 @@ class Modes(NamedTuple):
 
     omega: Array
     shapes: Array
-
-
-def massless_directions(mass_weights: ArrayLike, inertia: ArrayLike) -> Array:
-    """Combinations of angles that move no inertia: structural null vectors (nodes, directions) of the mass rows.
-
-    >>> massless_directions([[1.0, 0.0], [0.0, 1.0]], [2.0, 0.0]).T
-    array([[0., 1.]])
-    """
-    return null_vectors(np.asarray(mass_weights, dtype=float)[np.asarray(inertia, dtype=float) > 0.0])
 
 
 def _structural(weights: Array, values: Array) -> Iterator[tuple[slice | list[int], Array]]:
@@ -100,25 +90,3 @@ def modes(elastic_weights: ArrayLike, stiffness: ArrayLike, mass_weights: ArrayL
         if not isinstance(group, slice):  # then the part is a copy
             omega[group], shapes[group] = part
     return Modes(omega[0], shapes[0]) if single else Modes(omega, shapes)
-
-
-def count_below(
-    sigma: float, elastic_weights: ArrayLike, stiffness: ArrayLike, mass_weights: ArrayLike, inertia: ArrayLike
-) -> int:
-    """Number of modes below the angular frequency ``sigma`` > 0 [rad/s] by Sylvester's law of inertia, without solving.
-
-    The negative pivots of K − σ² M are counted on [[−σ 1, diag(√k) W], [Wᵀ diag(√k), −σ M]], of which it is the Schur
-    complement: that form resolves frequencies (not their squares) to rounding.  Weights and values as in ``modes``,
-    one design.  Source: Parlett, The Symmetric Eigenvalue Problem (1998), § 3.3.
-
-    >>> count_below(100.0, [[-1.0, 1.0]], [12e3], np.eye(2), [1.8, 1.2])
-    1
-    """
-    v = np.asarray(mass_weights, dtype=float)
-    mass = v.T @ (np.asarray(inertia, dtype=float)[:, np.newaxis] * v)
-    scale = 1.0 / np.sqrt(np.diagonal(mass))
-    elastic = np.sqrt(stiffness)[:, np.newaxis] * np.asarray(elastic_weights, dtype=float) * scale
-    rows = len(elastic)
-    pencil = np.block([[-sigma * np.eye(rows), elastic], [elastic.T, -sigma * scale[:, np.newaxis] * mass * scale]])
-    pivots = np.linalg.eigvalsh(ldl(pencil)[1])
-    return int(np.count_nonzero(pivots < 0.0)) - rows

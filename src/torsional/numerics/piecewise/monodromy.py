@@ -115,35 +115,6 @@ def _chain(times: ArrayLike, stages: ArrayLike, period: float) -> list[tuple[Key
     return [(key, time) for key, time in zip(keys, durations.tolist(), strict=True) if time > 0.0]
 
 
-def merged_crossings(
-    bases: StageBases, found: Sequence[ArrayLike], angles: ArrayLike, period: float
-) -> tuple[Array, IntArray]:
-    """Crossing times (s,) [s] and stages (s, m) after them, for `monodromy`, of crossings listed by connection.
-
-    ``found``: of each connection rows (τ, hinge, rising) with τ in [0, 2π), the number of the hinge in the law's
-    parameters and 1 where the angle rises; in any order.  ``angles`` (m,) [rad] at t = 0 tell the stage of a
-    connection that crosses nothing.
-
-    >>> bases = StageBases([[1.0]], [[0.0]], [[0.0]], [[1.0]], [[1.0, 0.5, 1.0, 1.0]])
-    >>> merged_crossings(bases, [[(np.pi, 0, 0.0), (1.0, 0, 1.0)]], [0.0], 2 * np.pi)[1].tolist()
-    [[1], [0]]
-    """
-    events, stage = [], bases.stage(angles)
-    for e, (law, values) in enumerate(zip(bases.laws, bases.parameters, strict=True)):
-        gaps = np.asarray(values, dtype=float)[1::3]
-        rows = np.asarray(found[e], dtype=float).reshape(-1, 3)
-        for tau, hinge, rising in rows[np.argsort(rows[:, 0], kind="stable")].tolist():
-            after = int(np.searchsorted(law.edges, gaps[int(hinge)])) + (rising > 0.5)
-            events.append((tau, e, after))
-            stage[e] = after  # the last of a period holds until the first of the next
-    stages = [stage.copy()]
-    for _, e, after in sorted(events):
-        stages.append(stages[-1].copy())
-        stages[-1][e] = after
-    times = np.array([tau for tau, _, _ in sorted(events)]) * period / TWO_PI
-    return times, np.array(stages[1:] if events else stages)
-
-
 def monodromy(bases: StageBases, times: ArrayLike, stages: ArrayLike, period: float) -> Array:
     """Monodromy matrix (size, size) of a periodic motion from t = 0 to ``period`` [s], in the states of ``bases``.
 
