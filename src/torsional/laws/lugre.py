@@ -57,16 +57,22 @@ def fading(x: float) -> tuple[float, float, float]:
     return left, mean, slope
 
 
+@register_jitable
+def _forgetting(parameters: Array, rate: float) -> tuple[float, float]:
+    """a = σ0 |u|/g(u) [1/s], at which the bristles forget how they are bent, ż = u − a z; and its derivative by u."""
+    curve, d_curve = stribeck(rate, parameters[3], parameters[4], parameters[5])
+    a = parameters[0] * abs(rate) / curve
+    return a, (math.copysign(parameters[0], rate) - a * d_curve) / curve if rate != 0.0 else 0.0
+
+
 @numba.njit(cache=True, error_model="numpy")
 def lugre_torque(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
     """The state after a step h with rate u and z before it: parameters σ0, σ1, σ2, g_c, g_s, u_s, N, c_v.
 
-    a = σ0 |u|/g(u), x = h a, z⁺ = e^−x z + h φ1(x) u, ż⁺ = e^−x (u − a z), f = N (σ0 z⁺ + σ1 ż⁺ + σ2 u) + c_v u.
+    x = h a, z⁺ = e^−x z + h φ1(x) u, ż⁺ = e^−x (u − a z), f = N (σ0 z⁺ + σ1 ż⁺ + σ2 u) + c_v u.
     """
     s0, s1, s2, load = parameters[0], parameters[1], parameters[2], parameters[LOAD]
-    curve, d_curve = stribeck(rate, parameters[3], parameters[4], parameters[5])
-    a = s0 * abs(rate) / curve
-    d_a = (math.copysign(s0, rate) - a * d_curve) / curve if rate != 0.0 else 0.0
+    a, d_a = _forgetting(parameters, rate)
     left, mean, d_mean = fading(a * step)
     flow = rate - a * memory
     bent = left * memory + step * mean * rate
@@ -80,9 +86,8 @@ def lugre_torque(parameters: Array, angle: float, rate: float, memory: float, st
 
 @numba.njit(cache=True, error_model="numpy")
 def lugre_flow(parameters: Array, angle: float, rate: float, memory: float, step: float) -> Told:
-    """ż = u − σ0 |u| z/g(u)."""
-    curve, _ = stribeck(rate, parameters[3], parameters[4], parameters[5])
-    return plain(rate - parameters[0] * abs(rate) / curve * memory, 0.0, 0.0)
+    """ż = u − a z."""
+    return plain(rate - _forgetting(parameters, rate)[0] * memory, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -149,10 +154,9 @@ class LuGre(Law):
         """
         u, h = np.broadcast_arrays(np.asarray(rate, dtype=float), np.asarray(step, dtype=float))
         s0, s1, s2 = self.bristle_stiffness, self.bristle_damping, self.viscous_damping
-        out = np.empty(u.shape)
+        out, parameters = np.empty(u.shape), self.parameters
         for i in np.ndindex(u.shape):
-            curve = stribeck(float(u[i]), self.sliding_torque, self.breakaway_torque, self.stribeck_rate)[0]
-            left, mean, _ = fading(s0 * abs(float(u[i])) / curve * float(h[i]))
+            left, mean, _ = fading(_forgetting(parameters, float(u[i]))[0] * float(h[i]))
             out[i] = self.normal_load * (s0 * float(h[i]) * mean + s1 * left + s2) + self.grease_damping
         return out
 
