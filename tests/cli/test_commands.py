@@ -5,15 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from numba.core.event import end_event, start_event
 from ruamel.yaml import YAML
 from tests.shipped import ROOT
 
+from torsional.cli import modes
 from torsional.files import load_model
 from torsional.files.starter import KINDS
+from torsional.numerics import compiling
 from torsional.quantities import SAMPLES
 from torsional.results import load_results
 from torsional.system import assemble
@@ -269,9 +273,26 @@ def test_after_warmup_nothing_is_left_to_compile(process: Run, truck: str, tmp_p
     assert process("warmup", NUMBA_CACHE_DIR=str(kept)).code == 0
     before = sorted(path.name for path in kept.rglob("*.nbc"))
     assert before
-    for command in ("check", "modes", "respond", "map", "campbell"):
-        assert process(command, truck, "--quiet", NUMBA_CACHE_DIR=str(kept)).code == 0
+    for command in ("check", "modes", "respond", "map", "campbell", "transient"):
+        length = ("--duration", "0.05 s") if command == "transient" else ()
+        assert process(command, truck, "--quiet", *length, NUMBA_CACHE_DIR=str(kept)).code == 0
         assert sorted(path.name for path in kept.rglob("*.nbc")) == before, command
+
+
+@pytest.mark.parametrize("options", [(), ("--quiet",), ("--json",)])
+def test_a_word_while_functions_are_compiled_unless_it_is_not_wanted(
+    torsional: Run, truck: str, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...]
+) -> None:
+    kernel = SimpleNamespace(py_func=modes.run)
+    monkeypatch.setattr(compiling, "watched", lambda: True)
+    monkeypatch.setattr(compiling, "PATIENCE", -1.0)
+    monkeypatch.setattr(compiling.WATCH, "told", False)
+    monkeypatch.setattr(modes, "run", lambda *_, **__: start_event("numba:compile", {"dispatcher": kernel}))
+    try:
+        told = torsional("modes", truck, *options)
+    finally:
+        end_event("numba:compile", {"dispatcher": kernel})
+    assert (told.out, told.err) == ("", "" if options else compiling.WORD + "\n")
 
 
 def test_version(torsional: Run) -> None:

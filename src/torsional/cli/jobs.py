@@ -28,7 +28,9 @@ def analysis(module: str, asked: dict[str, Any], suffixes: tuple[str, ...] = RES
 def _analyse(module: str, asked: dict[str, Any], suffixes: tuple[str, ...]) -> None:
     """Read the model before the analyses are imported: a bad file or output name is answered at once."""
     from torsional.cli.request import requested
+    from torsional.numerics.compiling import WATCH
 
     common = {key: asked.pop(key) for key in ("model", "changes", "output", "as_json", "quiet")}
     request = requested(suffixes=suffixes, **common)
-    import_module(f"torsional.cli.{module}").run(request, **asked)
+    with WATCH.silent(request.quiet or request.as_json):
+        import_module(f"torsional.cli.{module}").run(request, **asked)

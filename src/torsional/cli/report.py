@@ -12,6 +12,7 @@ from torsional.cli.documents import json_text
 from torsional.cli.outputs import checked, written
 from torsional.cli.progress import progress
 from torsional.cli.request import files_of, opened
+from torsional.numerics.compiling import WATCH
 from torsional.report import write_report
 
 
@@ -27,7 +28,7 @@ def run(
         (".html",),
         [f for path, each in zip(paths, models, strict=True) for f in files_of(path, each.document)],
     )
-    with progress("analyses and pictures", quiet or as_json) as moved:
+    with WATCH.silent(quiet or as_json), progress("analyses and pictures", quiet or as_json) as moved:
         written({output: lambda draft: write_report(models, draft, progress=moved)})
     if as_json:
         told = [

@@ -22,11 +22,14 @@ from torsional.engine.orders import HALF_ORDERS
 from torsional.files import changed, load_model, starter
 from torsional.model import Model
 from torsional.numerics.callbacks import address_of
+from torsional.numerics.compiling import WATCH
 from torsional.powertrain import Powertrain
 from torsional.solvers.campbell import campbell
 from torsional.solvers.hysteresis import hysteresis
 from torsional.solvers.map import response_map
 from torsional.solvers.periodic import model_response, periodic_response, subharmonic_map
+from torsional.solvers.transient import SpeedProfile, engine_drive, steady_map, transient
+from torsional.studies.scenarios.run_up import run_up
 from torsional.system import assemble
 from torsional.units import RPM
 
@@ -37,7 +40,7 @@ _STAGES = laws.Hinges(1.0, (1.0,), (1.0,), (1.0,))
 def run(as_json: bool, quiet: bool) -> None:
     """Answer the command."""
     seconds: dict[str, float] = {}
-    with progress("compiling", quiet or as_json) as moved:
+    with WATCH.silent(), progress("compiling", quiet or as_json) as moved:
         todo = list(steps(_small_model()))
         for done, (name, work) in enumerate(todo, 1):
             start = time.perf_counter()
@@ -75,6 +78,9 @@ def steps(model: Model) -> Iterator[Step]:
     yield "smooth", lambda: _one_disc(laws.Polynomial((1.0, 0.0, 0.5)))
     yield "hysteresis", _slow_sweep
     yield "friction", lambda: _one_disc(_STAGES, laws.Jenkins(0.1, 1.0))
+    yield "transient", lambda: _run_up(model)
+    yield "settled", lambda: steady_map(model, speeds[:1], torques[:1], [gear], most_periods=4)
+    yield "explicit", lambda: _explicit(model)
 
 
 def _periodic(model: Model) -> None:
@@ -99,6 +105,17 @@ def _one_disc(*beside: laws.Law, isolated: bool = False) -> None:
     system = assemble(Powertrain(parts))
     drive = Excitation(("disc",), np.array([0.0, 1.0]), np.array(1.0), np.ones((1, 2), dtype=complex))
     periodic_response(system, drive, (2.0, 2.5), highest_order=3.0, isolated=isolated)
+
+
+def _run_up(model: Model) -> None:
+    """A few steps in time."""
+    run_up(model, SpeedProfile.constant(100.0), 0.5 * model.full_load_peak(), 0.01)
+
+
+def _explicit(model: Model) -> None:
+    """A few explicit steps."""
+    drive = engine_drive(model, 100.0, 0.5 * model.full_load_peak())
+    transient(assemble(model.powertrain()), drive, 1e-3, speed=100.0, hold=model.landmarks.load, method="explicit")
 
 
 def _slow_sweep() -> None:

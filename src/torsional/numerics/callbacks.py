@@ -19,6 +19,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from torsional.errors import ModelError
+from torsional.numerics import compiling as compiling  # watches: laws come before whatever else is compiled
 
 RETURNED = 8
 """Numbers that a kernel gives back."""
