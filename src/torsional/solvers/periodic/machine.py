@@ -19,7 +19,7 @@ from torsional.results import of_model
 from torsional.solvers.operating import torque_places
 from torsional.solvers.periodic.load import Load
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.solvers.periodic.response import Variation, periodic_response
+from torsional.solvers.periodic.response import Exploration, Variation, answered
 from torsional.system import System, assemble
 
 Range = tuple[float, float]
@@ -54,21 +54,12 @@ def model_response(
     period is then rounded off by the small excitation at its own order.
     Raises ModelError for a model without engine, without laws, or that does not say where torque enters and leaves.
     """
-    low, high = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
-    load = engine_load(model, (low, high), torque, highest_order, base_order)
-    data = periodic_response(
-        assemble(model.powertrain(gear)),
-        load,
-        (low, high),
-        hold=model.landmarks.load,
-        highest_order=highest_order,
-        base_order=base_order or load.base_order,
-        depth=depth,
-        stability=stability,
-        isolated=isolated,
-        at=at,
+    span = model.operation.speed if speed is None else (float(speed[0]), float(speed[1]))
+    load = engine_load(model, span, torque, highest_order, base_order)
+    asked = Exploration(
+        highest_order=highest_order, base_order=base_order, depth=depth, stability=stability, isolated=isolated, at=at
     )
-    return of_model(data, model, model.gear_name(gear))
+    return _explored(model, gear, load, span, asked)
 
 
 @checked
@@ -93,7 +84,6 @@ def varied_response(
     for the mean engine torque [Nm]; ``at``: values at which every branch that passes them gets a point.  Raises
     ModelError as `model_response` does, and for a path the model does not have.
     """
-    system, hold = assemble(model.powertrain(gear)), model.landmarks.load
     if path == "torque":
         load = engine_torque_load(model, speed, span, highest_order, base_order)
         parameter: str | Variation = "mean_torque"
@@ -105,21 +95,23 @@ def varied_response(
         near = engine_load(model, (speed * (1 - NARROW), speed * (1 + NARROW)), torque, highest_order, base_order)
         load = Load.polynomial(near.nodes, near.orders, np.array([span[0]]), near.at(speed)[None])
         parameter = Variation(path, "", build)
-    base = base_order or load.base_order
-    data = periodic_response(
-        system,
-        load,
-        span,
+    asked = Exploration(
         parameter=parameter,
-        hold=hold,
         speed=speed,
         highest_order=highest_order,
-        base_order=base,
+        base_order=base_order,
         depth=depth,
         stability=stability,
         isolated=isolated,
         at=at,
     )
+    return _explored(model, gear, load, span, asked)
+
+
+def _explored(model: Model, gear: str | int | None, load: Load, span: Range, asked: Exploration) -> xr.Dataset:
+    """Branches of a model in a gear, its load taking up the mean torque, in the orders that the cylinders have."""
+    asked = replace(asked, hold=model.landmarks.load, base_order=asked.base_order or load.base_order)
+    data = answered(assemble(model.powertrain(gear)), load, span, asked)
     return of_model(data, model, model.gear_name(gear))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
@@ -135,8 +134,7 @@ def with_viscous_losses(system: System, frequency: float) -> System:
         raise ModelError("the frequency must be positive", where="frequency", found=f"{frequency:g} Hz")
     c = system.connections
     damping = c.damping + c.loss_factor * c.stiffness / (2 * np.pi * frequency)
-    settled = dataclasses.replace(c, damping=damping, loss_factor=np.zeros_like(c.loss_factor))
-    return dataclasses.replace(system, connections=settled)
+    return system.with_connections(damping=damping, loss_factor=np.zeros_like(c.loss_factor))
 
 
 def _refuse_loss(c: Connections) -> None:
