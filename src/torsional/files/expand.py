@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 from torsional.arguments import checked
-from torsional.components import Component, Coupling
+from torsional.components import Component
 from torsional.errors import ModelError
 from torsional.files.schema.document import VERSION
 from torsional.files.schema.making import kinds
@@ -72,9 +72,7 @@ def _component_document(part: Component, name: str = "") -> dict[str, Any]:
     for field in dataclasses.fields(kind):
         value = getattr(part, field.name)
         if value != field.default:
-            given |= (
-                _law(value, name) if isinstance(part, Coupling) and field.name == "law" else {field.name: _plain(value)}
-            )
+            given |= _law(value, name) if isinstance(value, Law) else {field.name: _plain(value)}
     return given
 
 

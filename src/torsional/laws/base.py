@@ -93,6 +93,11 @@ class Law:
         raise TypeError(f"{type(self).__name__} must define its parameters")
 
     @property
+    def label(self) -> str:
+        """What a picture writes beside a law that its stages do not describe; empty of most."""
+        return ""
+
+    @property
     def packed(self) -> Array:
         """The parameters as kernels read them, whatever sequence of numbers a law gives."""
         return np.ascontiguousarray(self.parameters, dtype=float)

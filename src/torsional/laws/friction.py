@@ -1,4 +1,4 @@
-"""Dry friction: Coulomb's regularised law, Jenkins' spring and slider, and the LuGre bristles."""
+"""Dry friction: Coulomb's regularised law, and Jenkins' spring and slider."""
 # mypy: disable-error-code="untyped-decorator"
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from torsional.arguments import checked_fields
 from torsional.checks import not_negative, positive
 from torsional.laws.base import Law, Told, plain
 from torsional.numerics.arrays import Array
+from torsional.units import show
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -110,6 +111,11 @@ class Jenkins(Law):
     def parameters(self) -> Array:
         """F, k."""
         return np.array([self.limit_torque, self.stiffness], dtype=float)
+
+    @property
+    def label(self) -> str:
+        """Its stiffness and the torque it slips at."""
+        return f"{show(self.stiffness, 'stiffness')}, slips at {show(self.limit_torque, 'torque')}"
 
     def stage_name(self, angle: float) -> str:
         """Under a steady torque it has come to rest."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from torsional.laws import Jenkins, Law
+from torsional.laws import Law
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND, Constraint, Mass, Stamp
 from torsional.units import show
@@ -27,12 +27,9 @@ class Link:
 
     @property
     def described(self) -> str:
-        """Its stiffness as a label: 13 kNm/rad, or 8 / 24 kNm/rad for stages; empty where it has none.
-
-        Of a friction washer its torque as well.
-        """
-        if isinstance(self.law, Jenkins):
-            return f"{show(self.law.stiffness, 'stiffness')}, slips at {show(self.law.limit_torque, 'torque')}"
+        """The label of its law, or its stiffness: 13 kNm/rad, 8 / 24 kNm/rad for stages; empty where it has none."""
+        if self.law is not None and self.law.label:
+            return self.law.label
         values = [self.stiffness]
         if self.law is not None and self.law.hinges() is not None:
             values = _stage_stiffnesses(self.law)

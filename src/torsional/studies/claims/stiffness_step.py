@@ -36,14 +36,13 @@ LIGHT, LIGHTLY = 5.0, (12e3, 13e3, 14e3, 15e3, 16e3, 17e3)
 def stages(model: Model) -> tuple[float, float]:
     """Stiffnesses [Nm/rad] before and after the transition of a two-stage model."""
     law = hinged(model, model.landmarks.springs[0])
-    edge = min(abs(gap) for gap in law.gaps)
-    return float(law.tangent(0.0)), float(law.tangent(1.001 * edge))
+    return float(law.tangent(0.0)), float(law.tangent(1.001 * law.nearest_edge))
 
 
 def transition_torque(model: Model) -> float:
     """Torque [Nm] at which the second stage of a two-stage model begins."""
     law = hinged(model, model.landmarks.springs[0])
-    return float(law.torque(min(abs(gap) for gap in law.gaps)))
+    return float(law.torque(law.nearest_edge))
 
 
 def stepped(model: Model, first: float, second: float, damping: float | None = None) -> Model:

@@ -10,7 +10,7 @@ from typing import Any
 from torsional.components import Component, Coupling, Inertia, PlanetSpin, Superposition
 from torsional.components.shaft import Damper
 from torsional.errors import ModelError, nearest
-from torsional.laws import Hinges
+from torsional.laws import Hinges, Law
 from torsional.model import Gear, Model
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND, Mass
@@ -71,10 +71,10 @@ def sprung(model: Model, name: str, stiffness: float) -> Model:
     return replaced(model, name, law=Hinges(float(stiffness)))
 
 
-def hinged(model: Model, name: str) -> Hinges:
+def hinged(model: Model, name: str) -> Law:
     """The piecewise-linear law of a coupling; raises ModelError for any other law."""
     law = _coupling(model, name).law
-    if not isinstance(law, Hinges):
+    if law.straight is None:
         raise ModelError("a piecewise-linear law is needed", where=name, found=type(law).__name__)
     return law
 
