@@ -32,6 +32,21 @@ def test_a_failure_on_the_way_leaves_the_old_files(tmp_path: Path, failure: Base
     assert second.read_text(encoding="utf-8") == "old"
 
 
+def test_a_stop_between_the_making_of_the_draft_folder_and_its_use_leaves_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make = os.mkdir
+
+    def stopped(path: str, *words: object, **more: object) -> None:
+        make(path, *words, **more)  # type: ignore[arg-type]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "mkdir", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        written({tmp_path / "a.csv": text_writer("new")})
+    assert names(tmp_path) == []
+
+
 def test_a_full_disk_is_told_with_the_file(tmp_path: Path) -> None:
     def fail(path: Path) -> None:
         raise OSError(28, "No space left on device")

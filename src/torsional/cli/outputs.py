@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-import tempfile
+import uuid
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -93,14 +93,19 @@ def _same(path: Path, given: Path) -> bool:
 @contextmanager
 def _draft_folder(parent: Path) -> Iterator[Path]:
     """A folder on the same disk, so that moving out of it is one step; it goes whatever happens."""
-    try:
-        folder = Path(tempfile.mkdtemp(prefix=".torsional-", dir=parent))
-    except OSError as error:
-        raise _unwritten(parent, error) from None
-    try:
+    folder = parent / f".torsional-{uuid.uuid4().hex}"
+    try:  # a Ctrl-C may come between the making of the folder and the next line
+        _make(folder)
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(mode=0o700)
+    except OSError as error:
+        raise _unwritten(folder.parent, error) from None
 
 
 def _settled(draft: Path, target: Path) -> None:
