@@ -190,43 +190,21 @@ def _rows(pairs: list[tuple[int, int]]) -> Rows:
 def _connected() -> Any:
     """One connection for each pair of nodes; +λ on plus is the hinge −max(0, k (−(φ + g0) − τ φ̇)) of φ = θ_plus −
     θ_minus, and where the pair stands the other way round the hinge of the other side."""
-    from torsional.numerics.motion.data import Connected
+    from torsional.numerics.linear.sparse_factor import places
+    from torsional.numerics.motion.data import Connected, HingeRows, Laws
 
     linear = {(a, b): (k, c) for a, b, k, c in LINEAR}
     hinges: dict[tuple[int, int], list[tuple[float, float, float]]] = {pair: [] for pair in linear}
     for a, b, gap, stiffness in _one_sided():
         pair, side = ((b, a), 1.0) if (b, a) in hinges else ((a, b), -1.0)
         hinges.setdefault(pair, []).append((side * gap, side, stiffness))
-    count = len(hinges)
-    start = np.cumsum([0, *(len(each) for each in hinges.values())])
+    of = places(e for e, each in enumerate(hinges.values()) for _ in each)
     gap, side, change = (np.array(column) for column in zip(*chain.from_iterable(hinges.values()), strict=True))
-    stiffness, damping = np.array([linear.get(pair, (0.0, 0.0)) for pair in hinges]).T.copy()
-    none, places = np.zeros(count), np.zeros(count, dtype=np.int64)
-    edges = np.zeros(count + 1, dtype=np.int64)
-    return Connected(
-        rows=_rows(list(hinges)),
-        stiffness=stiffness,
-        damping=damping,
-        centrifugal=none,
-        follow=none,
-        mean_rate=none,
-        hinge_start=start.astype(np.int64),
-        gap=gap,
-        side=side,
-        change=change,
-        contact_time=np.full(gap.size, CONTACT_TIME),
-        address=places,
-        law_start=edges,
-        law_values=np.zeros(0),
-        remembers=places,
-        load_place=places - 1,
-        load_constant=none,
-        load_level=places - 1,
-        load_centrifugal=none,
-        load_start=edges,
-        load_of=np.zeros(0, dtype=np.int64),
-        load_share=np.zeros(0),
-    )
+    constants = np.zeros((5, len(hinges)))
+    constants[:2] = np.array([linear.get(pair, (0.0, 0.0)) for pair in hinges]).T
+    none = Laws(np.zeros((9, 0), dtype=np.int64), np.zeros(0), np.zeros((2, 0)), places(()), np.zeros(0))
+    values = np.array([gap, side, change, np.full(gap.size, CONTACT_TIME)])
+    return Connected(_rows(list(hinges)), constants, HingeRows(of, values), none)
 
 
 def _driven(mean: float, pieces: int) -> Any:

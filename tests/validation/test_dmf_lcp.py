@@ -9,7 +9,7 @@ from tests.validation import dmf_lcp
 from tests.validation.dmf_lcp import INERTIA, NODES, REFERENCE, RPM, observed
 
 from torsional.numerics.explicit.march import explicit_march
-from torsional.numerics.motion.data import Equations, Rows
+from torsional.numerics.motion.data import DAMPER, SPRING, Equations, Rows
 from torsional.numerics.stepping.alpha_method import AlphaMethod
 from torsional.numerics.stepping.marching import Status, begin, march
 from torsional.numerics.stepping.plan import prepare
@@ -91,7 +91,7 @@ def test_the_arrays_say_the_same() -> None:
     """Torques by the formulas of the arrays, summed in NumPy, against the rates that the reference was made with."""
     flywheel = dmf_lcp.Flywheel(speed_from=700 * RPM, speed_to=1900 * RPM, span=0.7, mean=250.0)
     arrays = flywheel.equations()
-    closed = np.zeros(arrays.connected.gap.size, dtype=bool)
+    closed = np.zeros(arrays.connected.hinges.of.size, dtype=bool)
     for t, state in zip(np.linspace(0.0, 0.7, 40), states(40), strict=True):
         angle, rate = state[:NODES], state[NODES:]
         held, engaged = _held(arrays, angle, rate)
@@ -106,10 +106,11 @@ def _held(arrays: Equations, angle: np.ndarray, rate: np.ndarray) -> tuple[np.nd
     """Torques of the connections on the coordinates, and which hinges are closed."""
     on = arrays.connected
     w = _dense(on.rows)
-    of_hinge = np.repeat(np.arange(len(w)), np.diff(on.hinge_start))
-    beyond = on.side * (w @ angle)[of_hinge] - on.side * on.gap + on.contact_time * on.side * (w @ rate)[of_hinge]
-    hinges = on.side * np.maximum(0.0, on.change * beyond)
-    torque = on.stiffness * (w @ angle) + on.damping * (w @ rate) + np.bincount(of_hinge, hinges, len(w))
+    of_hinge, (gap, side, change, time) = on.hinges
+    beyond = side * (w @ angle)[of_hinge] - side * gap + time * side * (w @ rate)[of_hinge]
+    hinges = side * np.maximum(0.0, change * beyond)
+    springs = on.constants[SPRING] * (w @ angle) + on.constants[DAMPER] * (w @ rate)
+    torque = springs + np.bincount(of_hinge, hinges, len(w))
     return w.T @ torque, beyond > 0
 
 

@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
+from torsional.laws import Law, packed
 from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.linear.sparse_factor import places
+from torsional.numerics.motion.data import Connected, HingeRows, Laws, Rows
 
 TURN = 2.0 * np.pi
 
@@ -63,3 +66,42 @@ def packed_levels(levels: Sequence[tuple[ArrayLike, ArrayLike]]) -> tuple[IntArr
             raise ModelError("a level needs rising times and a finite value at each", found=f"{time} and {value}")
     start = np.cumsum([0, *(time.size for time in times)]).astype(np.int64)
     return start, np.concatenate([np.zeros(0), *times]), np.concatenate([np.zeros(0), *values])
+
+
+Load = tuple[float, int, float, Sequence[tuple[int, float]]]
+"""Constant, level, what follows Ω², shares of the torques of connections."""
+
+
+def packed_connections(
+    rows: Rows,
+    constants: Sequence[Sequence[float]],
+    hinges: Sequence[Sequence[Sequence[float]]],
+    laws: Sequence[Law | None],
+    loads: Sequence[Load | None],
+) -> Connected:
+    """Connections as arrays: of each its five constants, its hinges (gap, side, Δk, τ), its law and that one's load."""
+    own, start, address, remembers = packed(laws)
+    of, shares, table, weights = np.flatnonzero(address), [], [], []
+    for e in of.tolist():
+        load, law = loads[e], laws[e]
+        constant, level, squared, listed = load or (0.0, -1, 0.0, ())
+        place = -1 if load is None or law is None else start[e] + law.load_place
+        shared = len(shares), len(shares) + len(listed)
+        table.append((e, address[e], remembers[e], start[e], start[e + 1], place, level, *shared))
+        shares += listed
+        weights.append((constant, squared))
+    return Connected(
+        rows,
+        np.array(constants, dtype=float).reshape(-1, 5).T.copy(),
+        HingeRows(
+            places(e for e, each in enumerate(hinges) for _ in each),
+            np.array([hinge for each in hinges for hinge in each], dtype=float).reshape(-1, 4).T.copy(),
+        ),
+        Laws(
+            np.array(table, dtype=np.int64).reshape(-1, 9).T.copy(),
+            own,
+            np.array(weights, dtype=float).reshape(-1, 2).T.copy(),
+            places(e for e, _ in shares),
+            np.array([share for _, share in shares], dtype=float),
+        ),
+    )

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from tests.numerics.motion.packed import packed_levels, packed_profiles
+from tests.numerics.motion.packed import packed_connections, packed_levels, packed_profiles
 
-from torsional.laws.lugre import LOAD
 from torsional.numerics.motion.data import Connected, Driven, Equations, Governed, rows_of
 
 
@@ -71,28 +70,14 @@ def _rows(rows: list[list[float]], size: int) -> Any:
 
 def connected(parts: list[Connection], size: int) -> Connected:
     """Connections as arrays over ``size`` coordinates."""
-    hinges = _floats([v for part in parts for hinge in part.hinges for v in hinge]).reshape(-1, 4).T.copy()
-    values = [[] if part.law is None else list(part.law.parameters) for part in parts]
-    loads = [part.load or (0.0, -1, 0.0) for part in parts]
-    loaded = [part.load is not None or bool(part.load_of) for part in parts]
-    return Connected(
-        rows=_rows([part.row for part in parts], size),
-        **{name: _floats([getattr(part, name) for part in parts])
-           for name in ("stiffness", "damping", "centrifugal", "follow", "mean_rate")},
-        hinge_start=_starts([part.hinges for part in parts]),
-        gap=hinges[0], side=hinges[1], change=hinges[2], contact_time=hinges[3],
-        address=_ints([0 if part.law is None else part.law.address for part in parts]),
-        law_start=_starts(values),
-        law_values=_floats([v for row in values for v in row]),
-        remembers=_ints([int(part.law is not None and part.law.remembers) for part in parts]),
-        load_place=_ints([LOAD if yes else -1 for yes in loaded]),
-        load_constant=_floats([load[0] for load in loads]),
-        load_level=_ints([load[1] for load in loads]),
-        load_centrifugal=_floats([load[2] for load in loads]),
-        load_start=_starts([part.load_of for part in parts]),
-        load_of=_ints([e for part in parts for e, _ in part.load_of]),
-        load_share=_floats([share for part in parts for _, share in part.load_of]),
-    )  # fmt: skip
+    columns = ("stiffness", "damping", "centrifugal", "follow", "mean_rate")
+    return packed_connections(
+        _rows([part.row for part in parts], size),
+        [[getattr(part, name) for name in columns] for part in parts],
+        [part.hinges for part in parts],
+        [part.law for part in parts],
+        [(*(part.load or (0.0, -1, 0.0)), part.load_of) if part.load or part.load_of else None for part in parts],
+    )
 
 
 def driven(sources: list[Source], levels: Any, profiles: Any, cranks: Any, size: int) -> Driven:

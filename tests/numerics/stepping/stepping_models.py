@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from tests.numerics.motion.packed import packed_levels, packed_profiles
+from tests.numerics.motion.packed import packed_connections, packed_levels, packed_profiles
 
 from torsional.laws import Law
 from torsional.numerics.motion.data import Connected, Driven, Equations, Governed, Rows, rows_of
@@ -68,35 +68,15 @@ def integers(values: Sequence[int]) -> Any:
     return np.array(values, dtype=np.int64)
 
 
-def starts(parts: Sequence[Sequence[Any]]) -> Any:
-    return np.append(0, np.cumsum([len(part) for part in parts])).astype(np.int64)
-
-
 def connected(links: Sequence[Link], n: int) -> Connected:
-    hinges = np.array([hinge for link in links for hinge in link.hinges], dtype=float).reshape(-1, 4)
-    values = [[] if link.law is None else link.law.parameters.tolist() for link in links]
-    shares = [link.load[2] if link.load else [] for link in links]
     columns = ("stiffness", "damping", "centrifugal", "follow", "mean_rate")
-    given = {name: np.array([getattr(link, name) for link in links], dtype=float) for name in columns}
-    return Connected(
-        rows=table([link.row for link in links], n),
-        **given,
-        hinge_start=starts([link.hinges for link in links]),
-        gap=hinges[:, 0].copy(),
-        side=hinges[:, 1].copy(),
-        change=hinges[:, 2].copy(),
-        contact_time=hinges[:, 3].copy(),
-        address=integers([0 if link.law is None else link.law.address for link in links]),
-        law_start=starts(values),
-        law_values=np.array([x for own in values for x in own], dtype=float),
-        remembers=integers([int(link.law is not None and link.law.remembers) for link in links]),
-        load_place=integers([link.law.load_place if link.law and link.load else -1 for link in links]),
-        load_constant=np.array([link.load[0] if link.load else 0.0 for link in links]),
-        load_level=integers([link.level for link in links]),
-        load_centrifugal=np.array([link.load[1] if link.load else 0.0 for link in links]),
-        load_start=starts(shares),
-        load_of=integers([j for own in shares for j, _ in own]),
-        load_share=np.array([share for own in shares for _, share in own], dtype=float),
+    loads = [None if link.load is None else (link.load[0], link.level, *link.load[1:]) for link in links]
+    return packed_connections(
+        table([link.row for link in links], n),
+        [[getattr(link, name) for name in columns] for link in links],
+        [link.hinges for link in links],
+        [link.law for link in links],
+        loads,
     )
 
 

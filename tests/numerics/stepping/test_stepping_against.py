@@ -12,7 +12,7 @@ from tests.validation import dmf_lcp
 from torsional.laws import Jenkins, Law, Stribeck
 from torsional.numerics.contacts.step import OneSided, Step, step_problem
 from torsional.numerics.explicit.march import explicit_march
-from torsional.numerics.motion.data import Equations, Governed
+from torsional.numerics.motion.data import DAMPER, SPRING, Equations, Governed
 from torsional.numerics.stepping.alpha_method import AlphaMethod
 from torsional.numerics.stepping.marching import Count, Settings, Status, begin, march
 from torsional.numerics.stepping.plan import dense, prepare
@@ -114,10 +114,10 @@ def test_the_complementarity_problem_has_the_same_solution() -> None:
     found = march(plan, method, h, 400, begin(plan, 0.0, 0.0), settings=Settings(guard=False))
     c = of.connected
     w = dense(c.rows, of.coordinates)
-    hinge = np.repeat(np.arange(len(w)), np.diff(c.hinge_start))
-    walls = OneSided(-(w[hinge] * c.side[:, None]).T, c.side * c.gap, c.change, c.contact_time)
+    hinge, (gap, side, change, time) = c.hinges
+    walls = OneSided(-(w[hinge] * side[:, None]).T, side * gap, change, time)
     M = np.diag(of.inertia)
-    linear = M, w.T @ (w * c.damping[:, None]), w.T @ (w * c.stiffness[:, None])
+    linear = M, *(w.T @ (w * c.constants[row, :, None]) for row in (DAMPER, SPRING))
     step = Step(h, method.alpha_m, method.alpha_f, method.gamma, method.beta)
     state, load, closed = (
         (np.zeros(18), np.zeros(18), found.records.acceleration[0].copy(), np.zeros(hinge.size)),
@@ -175,16 +175,16 @@ def test_steps_far_too_long_end_all_the_same(n: int) -> None:
     of, draw, fallbacks = crowded(n), np.random.default_rng(1), 0
     plan, c = prepare(of), of.connected
     w = dense(c.rows, n)
-    hinge = np.repeat(np.arange(len(w)), np.diff(c.hinge_start))
+    hinge, (gap, side, change, time) = c.hinges
     for _ in range(100):
         state = begin(plan, draw.normal(size=n) * 0.03, draw.normal(size=n) * 30.0)
         found = march(plan, MEMBERS["chung_hulbert_0.8"], 0.1, 5, state, settings=Settings(guard=False))
         assert found.status in (Status.DONE, Status.PRODUCES)
         fallbacks += found.count(Count.FALLBACKS)
         twist, rate = w @ found.records.q[-1], w @ found.records.v[-1]
-        beyond = c.side * (twist[hinge] - c.gap + c.contact_time * rate[hinge])
-        wanted = c.stiffness * twist + c.damping * rate
-        np.add.at(wanted, hinge, c.side * c.change * np.maximum(0.0, beyond))
+        beyond = side * (twist[hinge] - gap + time * rate[hinge])
+        wanted = c.constants[SPRING] * twist + c.constants[DAMPER] * rate
+        np.add.at(wanted, hinge, side * change * np.maximum(0.0, beyond))
         rounding = 1e-7 * np.abs(wanted).max()  # that of a matrix whose entries span ten decades
         np.testing.assert_allclose(found.records.torque[-1], wanted, rtol=0.0, atol=rounding)
     assert fallbacks > 0

@@ -11,7 +11,7 @@ from torsional.components import Coupling, Damper, GearPair, Inertia, Shaft
 from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges, LuGre, Polynomial, Stribeck, hinge_rows
 from torsional.numerics.explicit.march import explicit_march
-from torsional.numerics.motion.data import Connected, Rows
+from torsional.numerics.motion.data import DAMPER, FOLLOW, MEAN_RATE, SPRING, Connected, Rows
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient.arrays import connected, masses, with_viscous_losses
 from torsional.solvers.transient.problem import Problem
@@ -75,21 +75,21 @@ def test_springs_dampers_and_hinges() -> None:
     found, c = connected(system, {"pedal": 0}), system.connections
     w = dense(found.rows, len(system.coordinates))
     np.testing.assert_array_equal(w, c.weights)
-    np.testing.assert_array_equal((w.T * found.damping) @ w, system.C)
+    np.testing.assert_array_equal((w.T * found.constants[DAMPER]) @ w, system.C)
     place = c.names.index("flywheel")
-    assert found.stiffness[place] == STAGES.stiffness and found.stiffness[c.names.index("shaft")] == 1e5
+    springs = found.constants[SPRING]
+    assert springs[place] == STAGES.stiffness and springs[c.names.index("shaft")] == 1e5
     angles = np.linspace(-0.3, 0.3, 61)
     for name, law in (("flywheel", STAGES), ("teeth", PARTS["teeth"].law)):
         np.testing.assert_allclose(summed(found, c.names.index(name), angles), law.torque(angles, 2.0), atol=1e-9)
-    assert np.flatnonzero(found.address).tolist() == [c.names.index("rub"), c.names.index("drag")]
+    assert found.laws.of.tolist() == [c.names.index("rub"), c.names.index("drag")]
 
 
 def summed(found: Connected, e: int, angle: Any) -> Any:
     """The torque that the arrays of one connection say, its damper left out, at the rate 2."""
-    torque = found.stiffness[e] * angle
-    for h in range(found.hinge_start[e], found.hinge_start[e + 1]):
-        side, change = found.side[h], found.change[h]
-        pressed = side * (angle - found.gap[h]) + found.contact_time[h] * side * 2.0
+    torque = found.constants[SPRING, e] * angle
+    for gap, side, change, time in found.hinges.values.T[found.hinges.of == e]:
+        pressed = side * (angle - gap) + time * side * 2.0
         torque = torque + side * change * np.maximum(0.0, pressed)
     return torque
 
@@ -102,32 +102,29 @@ def test_whose_speed_a_connection_sees() -> None:
     expected = {name: float(system.connections.weights[i] @ ones) for i, name in enumerate(names)}
     assert expected["bearing"] == -1.0 and expected["drag"] == pytest.approx(-0.5)
     for i, name in enumerate(names):
-        assert found.follow[i] == pytest.approx(expected[name] if name == "bearing" else 0.0, abs=0)
-        assert found.mean_rate[i] == pytest.approx(expected[name] if name == "drag" else 0.0, abs=0)
+        assert found.constants[FOLLOW, i] == pytest.approx(expected[name] if name == "bearing" else 0.0, abs=0)
+        assert found.constants[MEAN_RATE, i] == pytest.approx(expected[name] if name == "drag" else 0.0, abs=0)
 
 
 def test_laws_and_their_loads() -> None:
     system = line()
     found, names = connected(system, {"other": 0, "pedal": 1}), system.connections.names
-    e = names.index("rub")
-    values = found.law_values[found.law_start[e] : found.law_start[e + 1]]
-    assert values.tolist() == BRISTLES.parameters.tolist() and found.address[e] == BRISTLES.address
-    assert (found.load_place[e], found.load_constant[e], found.load_level[e]) == (LuGre.load_place, 4.0, 1)
-    assert found.load_centrifugal[e] == pytest.approx(0.02 / 4)
-    span = slice(found.load_start[e], found.load_start[e + 1])
-    told = {names[j]: share for j, share in zip(found.load_of[span], found.load_share[span], strict=True)}
+    laws, drag = found.laws, PARTS["drag"].law
+    (rub, other), count = laws.places.T.tolist(), BRISTLES.parameters.size
+    assert laws.values.tolist() == [*BRISTLES.parameters, *drag.parameters]
+    assert rub == [names.index("rub"), BRISTLES.address, 1, 0, count, LuGre.load_place, 1, 0, 2]
+    assert other == [names.index("drag"), drag.address, 0, count, laws.values.size, -1, -1, 2, 2]
+    assert laws.loads.T.tolist() == [[4.0, pytest.approx(0.02 / 4)], [0.0, 0.0]]
+    told = {names[j]: share for j, share in zip(laws.load_of, laws.shares, strict=True)}
     assert told == {"shaft": 0.25, "flywheel": 0.5}
-    others = np.arange(len(names)) != e
-    assert (found.load_place[others] == -1).all() and (found.load_level[others] == -1).all()
-    assert found.remembers.sum() == 1 and found.remembers[e] == 1
-    assert {found.hinge_start.size, found.law_start.size, found.load_start.size} == {len(names) + 1}
 
 
 def test_a_linear_line_has_empty_arrays_of_the_right_kinds() -> None:
     found = connected(assemble(Powertrain({"a": Inertia(1.0), "b": Inertia(2.0), "s": Shaft("a", "b", 1e4)})))
-    kinds = {name: getattr(found, name).dtype for name in found._fields if name != "rows"}
-    whole = {"hinge_start", "address", "law_start", "remembers", "load_place", "load_level", "load_start", "load_of"}
-    assert kinds == {name: np.dtype(np.int64 if name in whole else float) for name in kinds}
+    kinds = [array.dtype.char for array in (found.constants, *found.hinges, *found.laws)]
+    shapes = [array.shape for array in (found.constants, *found.hinges, *found.laws)]
+    assert "".join(kinds) == "dIdlddId"
+    assert shapes == [(5, 1), (0,), (4, 0), (9, 0), (0,), (2, 0), (0,), (0,)]
 
 
 def test_loss_factors_are_refused_or_made_dampers() -> None:
@@ -136,7 +133,7 @@ def test_loss_factors_are_refused_or_made_dampers() -> None:
         connected(lossy, {"pedal": 0})
     taken = with_viscous_losses(lossy, 25.0)
     place = lossy.connections.names.index("shaft")
-    assert connected(taken, {"pedal": 0}).damping[place] == pytest.approx(40.0 + 0.02 * 1e5 / (50 * np.pi))
+    assert connected(taken, {"pedal": 0}).constants[DAMPER, place] == pytest.approx(40.0 + 0.02 * 1e5 / (50 * np.pi))
     with pytest.raises(ModelError, match="frequency"):
         with_viscous_losses(lossy, 0.0)
     parts = {"a": Inertia(1.0), "b": Inertia(2.0), "c": Inertia(1.0), "soft": Shaft("a", "b", 1e4, loss_factor=0.1)}

@@ -18,14 +18,32 @@ from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.hinge import depth
 from torsional.numerics.linear.small import backsolve, factor
-from torsional.numerics.motion.data import Connected, Equations, Rows
+from torsional.numerics.motion.data import (
+    ADDRESS,
+    CENTRIFUGAL,
+    CHANGE,
+    CONTACT_TIME,
+    DAMPER,
+    FOLLOW,
+    GAP,
+    LAW_OF,
+    MEAN_RATE,
+    REMEMBERS,
+    SIDE,
+    SPRING,
+    START,
+    STOP,
+    Connected,
+    Equations,
+    Rows,
+)
 from torsional.numerics.motion.leaking import leak_towards
+from torsional.numerics.motion.normal_load import press
 from torsional.numerics.motion.sources import (
     crank_terms,
     frame_at,
     governed_torque,
     governor_error,
-    level_at,
     row_product,
     source_torques,
 )
@@ -58,8 +76,10 @@ def places(equations: Equations, flows: Mapping[int, int] | None = None) -> Plac
     Raises ModelError for coordinates without mass and for laws with another memory, which has no rate.
     """
     connected, n = equations.connected, equations.coordinates
-    remembers = np.flatnonzero((connected.remembers != 0) & (connected.address != 0))
-    flow = np.array([(flows or {}).get(address, 0) for address in connected.address.tolist()], dtype=np.int64)
+    laws = connected.laws
+    remembers = laws.of[laws.places[REMEMBERS] != 0]
+    flow, memory = np.zeros((2, connected.constants.shape[1]), dtype=np.int64)
+    flow[laws.of] = [(flows or {}).get(address, 0) for address in laws.places[ADDRESS].tolist()]
     if not flow[remembers].all():
         remedy = "take the implicit steps, or LuGre friction"
         raise ModelError("this law's memory has no rate to be integrated explicitly", remedy=remedy)
@@ -67,7 +87,7 @@ def places(equations: Equations, flows: Mapping[int, int] | None = None) -> Plac
     _add_masses(equations.mass_rows, equations.inertia, mass, 0)
     if np.linalg.matrix_rank(mass, hermitian=True) < n:
         raise ModelError("explicit integration needs a mass at every coordinate", remedy="condense massless ones first")
-    memory = np.full(connected.stiffness.size, -1, dtype=np.int64)
+    memory[:] = -1
     memory[remembers] = np.arange(remembers.size)
     governor = 2 * n + 1
     memories = governor + equations.governed.proportional.size
@@ -93,25 +113,30 @@ def add_row(rows: Rows, i: int, factor: float, out: Array) -> None:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def elastic_torque(connected: Connected, e: int, angle: float, rate: float, omega: float) -> float:
-    """Torque [Nm] of a connection's spring, damper and hinges, with or without contact times."""
-    torque = (connected.stiffness[e] + connected.centrifugal[e] * omega * omega) * angle + connected.damping[e] * rate
-    for h in range(connected.hinge_start[e], connected.hinge_start[e + 1]):
-        side = connected.side[h]
-        beyond = depth(angle, rate, connected.gap[h], side, connected.contact_time[h])
+def elastic_torques(
+    c: Connected,
+    motion: tuple[Array, Array],
+    turning: tuple[float, float, float],
+    angle: Array,
+    rate: Array,
+    torque: Array,
+) -> None:
+    """Angles, rates and torques [Nm] of springs, dampers and hinges, with or without contact times, (E,) each.
+
+    ``motion`` q, q̇; ``turning``: the frame's speed, what the reference rotation is ahead of it, Ω.
+    """
+    frame, ahead, omega = turning
+    constants, hinges = c.constants, c.hinges
+    for e in range(torque.size):
+        angle[e] = row_product(c.rows, e, motion[0])
+        rate[e] = row_product(c.rows, e, motion[1]) - constants[FOLLOW, e] * ahead + constants[MEAN_RATE, e] * frame
+        stiffness = constants[SPRING, e] + constants[CENTRIFUGAL, e] * omega * omega
+        torque[e] = stiffness * angle[e] + constants[DAMPER, e] * rate[e]
+    for h in range(hinges.of.size):
+        e, side = hinges.of[h], hinges.values[SIDE, h]
+        beyond = depth(angle[e], rate[e], hinges.values[GAP, h], side, hinges.values[CONTACT_TIME, h])
         if beyond > 0.0:
-            torque += side * connected.change[h] * beyond
-    return torque
-
-
-@numba.njit(cache=True, error_model="numpy")
-def normal_load(c: Connected, outside: Outside, e: int, t: float, omega: float, elastic: Array) -> float:
-    """N of a law whose load follows a level, speed and the torques of springs."""
-    load = c.load_constant[e] * level_at(outside.level_start, outside.knots, c.load_level[e], t)
-    load += c.load_centrifugal[e] * omega * omega
-    for j in range(c.load_start[e], c.load_start[e + 1]):
-        load += c.load_share[j] * abs(elastic[c.load_of[j]])
-    return max(load, 0.0)
+            torque[e] += side * hinges.values[CHANGE, h] * beyond
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -119,29 +144,24 @@ def _connection_torques(
     c: Connected, at: Places, t: float, y: Array, frame_speed: float, torque: Array, out: Array
 ) -> None:
     """Take the torques of all connections from ``torque`` (N,), and put the rates of memories into ``out``."""
-    n, outside = torque.size, at.outside
-    q, v, count = y[:n], y[n : 2 * n], c.stiffness.size
+    n, outside, places = torque.size, at.outside, c.laws.places
+    q, v = y[:n], y[n : 2 * n]
     omega = row_product(outside.rows, outside.reference, v) + frame_speed
-    turning = y[2 * n] - frame_speed if math.isfinite(outside.reference_time) else 0.0
-    angle, rate, elastic = np.empty(count), np.empty(count), np.empty(count)
-    for e in range(count):
-        angle[e] = row_product(c.rows, e, q)
-        rate[e] = row_product(c.rows, e, v) - c.follow[e] * turning + c.mean_rate[e] * frame_speed
-        elastic[e] = elastic_torque(c, e, angle[e], rate[e], omega)
-    for e in range(count):
-        total = elastic[e]
-        if c.address[e] != 0:
-            values = c.law_values[c.law_start[e] : c.law_start[e + 1]].copy()
-            if c.load_place[e] >= 0:
-                values[c.load_place[e]] = normal_load(c, outside, e, t, omega, elastic)
-            bent = 0.0
-            if at.memory[e] >= 0:
-                bent = y[at.memories + at.memory[e]]
-                flowing = law_at(at.flow[e])
-                out[at.memories + at.memory[e]] = flowing(values, angle[e], rate[e], bent, 0.0)[0]
-            law = law_at(c.address[e])
-            total += law(values, angle[e], rate[e], bent, 0.0)[0]
-        add_row(c.rows, e, -total, torque)
+    ahead = y[2 * n] - frame_speed if math.isfinite(outside.reference_time) else 0.0
+    angle, rate, elastic = np.empty((3, c.constants.shape[1]))
+    elastic_torques(c, (q, v), (frame_speed, ahead, omega), angle, rate, elastic)
+    total, values = elastic.copy(), c.laws.values.copy()
+    for l in range(places.shape[1]):
+        e, law, bent = places[LAW_OF, l], law_at(places[ADDRESS, l]), 0.0
+        press(c.laws, outside.level_start, outside.knots, l, t, omega * omega, elastic, values)
+        own = values[places[START, l] : places[STOP, l]]
+        if places[REMEMBERS, l]:
+            place, flowing = at.memories + at.memory[e], law_at(at.flow[e])
+            bent = y[place]
+            out[place] = flowing(own, angle[e], rate[e], bent, 0.0)[0]
+        total[e] += law(own, angle[e], rate[e], bent, 0.0)[0]
+    for e in range(total.size):
+        add_row(c.rows, e, -total[e], torque)
 
 
 @numba.njit(cache=True, error_model="numpy")

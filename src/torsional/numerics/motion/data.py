@@ -13,7 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.linear.sparse_factor import PlaceArray
 
+SPRING, DAMPER, CENTRIFUGAL, FOLLOW, MEAN_RATE = range(5)
+"""Rows of the ``constants`` of connections."""
+GAP, SIDE, CHANGE, CONTACT_TIME = range(4)
+"""Rows of the hinges' ``values``."""
+LAW_OF, ADDRESS, REMEMBERS, START, STOP, LOAD_AT, LOAD_LEVEL, SHARES_START, SHARES_STOP = range(9)
+"""Rows of the laws' ``places``: connection, kernel, memory, ``values``, place of the load there or −1, level and
+``shares`` of the load."""
+LOAD_CONSTANT, LOAD_SQUARED = range(2)
+"""Rows of the laws' ``loads``: that part of the load which follows a level, and that which follows Ω²."""
 PENDULUM = 7
 """Numbers that describe a pendulum."""
 LEAK = 5
@@ -28,49 +38,52 @@ class Rows(NamedTuple):
     weight: Array
 
 
+class HingeRows(NamedTuple):
+    """Hinges (H,) of connections ``of``, those of one in a row, with their ``values`` (4, H).
+
+    Each is s max(0, Δk (s(φ − g) + τ s φ̇)) for Δk > 0; a negative Δk (a stage that ends) has τ = 0 and
+    max(0, s(φ − g)).
+    """
+
+    of: PlaceArray
+    values: Array
+
+
+class Laws(NamedTuple):
+    """Laws (L,) that are no sums of hinges: ``places`` (9, L), their ``values`` end to end, ``loads`` (2, L).
+
+    Where LOAD_AT ≥ 0 the value there is the normal load N of the law and follows
+
+        N_l = max(0, load_constant_l level(t) + load_squared_l Ω² + Σ_k share_k |torque of load_of_k|)
+
+    with the level LOAD_LEVEL of `Driven` (−1: one): a clutch that engages.  ``load_of`` are connections, their
+    torques those of springs, hinges and dampers; those of a law are from SHARES_START to SHARES_STOP.
+    """
+
+    places: IntArray
+    values: Array
+    loads: Array
+    load_of: PlaceArray
+    shares: Array
+
+    @property
+    def of(self) -> IntArray:
+        """Their connections."""
+        return np.asarray(self.places[LAW_OF])
+
+
 class Connected(NamedTuple):
-    """Connections e: a spring and a damper along w_e, and what bends beside them.
+    """Connections e: a spring and a damper along w_e, its ``constants`` (5, E), and what bends beside them.
 
-    ``follow`` (E,): w_e·1 where a damper or a law to ground acts on the deviation from the reference rotation,
-    else 0; the rate is w_e·q̇ − follow_e (Ω_r − frame_speed).  ``mean_rate`` (E,): share of the frame's speed that
-    is added to the rate where the whole speed counts (road load, brakes), else 0.  ``centrifugal`` (E,)
-    [Nms²/rad]: more stiffness times Ω².
-
-    Hinges h of connection e are ``hinge_start[e]`` to ``hinge_start[e + 1]``, each s max(0, Δk (s(φ − g) + τ s
-    φ̇)) for Δk > 0; a negative Δk (a stage that ends) has τ = 0 and max(0, s(φ − g)).
-
-    A law that is no sum of hinges has its kernel at ``address`` (0: none) with ``law_values`` from
-    ``law_start[e]`` on, and a memory where it ``remembers``.  Where ``load_place`` ≥ 0 that value is the normal
-    load N of the law and follows
-
-        N_e = max(0, load_constant_e level(t) + load_centrifugal_e Ω² + Σ_j load_share_j |torque of load_of_j|)
-
-    with the level ``load_level_e`` of `Driven` (−1: one): a clutch that engages.  ``load_of`` are connections, their
-    torques those of springs, hinges and dampers.
+    FOLLOW: w_e·1 where a damper or a law to ground acts on the deviation from the reference rotation, else 0; the rate
+    is w_e·q̇ − follow_e (Ω_r − frame_speed).  MEAN_RATE: share of the frame's speed that is added to the rate where the
+    whole speed counts (road load, brakes), else 0.  CENTRIFUGAL [Nms²/rad]: more stiffness times Ω².
     """
 
     rows: Rows
-    stiffness: Array
-    damping: Array
-    centrifugal: Array
-    follow: Array
-    mean_rate: Array
-    hinge_start: IntArray
-    gap: Array
-    side: Array
-    change: Array
-    contact_time: Array
-    address: IntArray
-    law_start: IntArray
-    law_values: Array
-    remembers: IntArray
-    load_place: IntArray
-    load_constant: Array
-    load_level: IntArray
-    load_centrifugal: Array
-    load_start: IntArray
-    load_of: IntArray
-    load_share: Array
+    constants: Array
+    hinges: HingeRows
+    laws: Laws
 
 
 class Driven(NamedTuple):

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from torsional.numerics.arrays import Array
 from torsional.numerics.linear.small import backsolve, factor
-from torsional.numerics.motion.data import Connected
+from torsional.numerics.motion.data import LAW_OF, LOAD_AT, SHARES_START, SHARES_STOP, Connected
 from torsional.numerics.quasi_static.torques import Work, evaluate
 from torsional.numerics.uncounted import uncounted
 
@@ -40,7 +40,7 @@ def unbalanced(c: Connected, old: Array, place: Array, w: Work) -> bool:
     for i in range(free):
         w.rest[i] = w.hold[0] * (place[i] - old[i])
     largest, rounding = 0.0, 0.0
-    for e in range(c.stiffness.size):
+    for e in range(w.torque.size):
         largest = max(largest, abs(w.torque[e]))
         rounding = max(rounding, w.slope[e] * max(abs(w.angle[e]), w.reach[0]))
         for k in range(c.rows.start[e], c.rows.start[e + 1]):
@@ -68,14 +68,17 @@ def _add(c: Connected, e: int, j: int, slope: float, w: Work) -> None:
 @uncounted()
 def _newton_step(c: Connected, w: Work) -> bool:
     """The Newton step into ``move``; whether there is one."""
+    laws = c.laws
     w.tangent[:] = 0.0
-    for e in range(c.stiffness.size):
+    for e in range(w.slope.size):
         _add(c, e, e, w.slope[e], w)
-        if c.load_place[e] >= 0 and w.load[e] > 0.0:
-            for k in range(c.load_start[e], c.load_start[e + 1]):
-                j = c.load_of[k]
+    for l in range(laws.places.shape[1]):
+        e = laws.places[LAW_OF, l]
+        if laws.places[LOAD_AT, l] >= 0 and w.load[e] > 0.0:
+            for k in range(laws.places[SHARES_START, l], laws.places[SHARES_STOP, l]):
+                j = laws.load_of[k]
                 side = 1.0 if w.spring[j] > 0.0 else -1.0
-                _add(c, e, j, w.load_slope[e] * c.load_share[k] * side * w.spring_slope[j], w)
+                _add(c, e, j, w.load_slope[e] * laws.shares[k] * side * w.spring_slope[j], w)
     for i in range(w.rest.size):
         w.tangent[i, i] += w.hold[0]
         w.move[i] = -w.rest[i]

@@ -10,7 +10,22 @@ import numpy as np
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.hinge import depth
-from torsional.numerics.motion.data import Connected
+from torsional.numerics.motion.data import (
+    ADDRESS,
+    CENTRIFUGAL,
+    CHANGE,
+    CONTACT_TIME,
+    DAMPER,
+    GAP,
+    LAW_OF,
+    LOAD_AT,
+    SIDE,
+    SPRING,
+    START,
+    STOP,
+    Connected,
+)
+from torsional.numerics.motion.normal_load import normal_load
 from torsional.numerics.motion.sources import row_product
 from torsional.numerics.uncounted import uncounted
 
@@ -25,6 +40,7 @@ class Work(NamedTuple):
     """
 
     angle: Array
+    rate: Array
     spring: Array
     spring_slope: Array
     torque: Array
@@ -48,56 +64,48 @@ def work_for(connected: Connected, coordinates: int, reach: float, miss: float) 
 
     ``miss`` [rad]: how far a step may miss where the pace of the one before would have led, before it is shortened.
     """
-    count, free = len(connected.stiffness), coordinates - 1
-    stiffest = connected.stiffness.max(initial=0.0) + np.abs(connected.change).max(initial=0.0)
+    count, free = connected.constants.shape[1], coordinates - 1
+    stiffest = connected.constants[SPRING].max(initial=0.0) + np.abs(connected.hinges.values[CHANGE]).max(initial=0.0)
     square = np.zeros((free, free)), np.zeros(free, dtype=np.int64)
     ends = np.zeros(free), np.array([1e-12 * stiffest]), np.array([reach, miss]), np.zeros(free), np.zeros(coordinates)
-    values = [np.zeros(count) for _ in range(8)]
-    given: tuple[Any, ...] = (*values, connected.law_values.copy(), np.zeros(free), *square, *ends)
+    values = [np.zeros(count) for _ in range(9)]
+    given: tuple[Any, ...] = (*values, connected.laws.values.copy(), np.zeros(free), *square, *ends)
     return Work(*given)
 
 
 @uncounted()
-def _spring(c: Connected, e: int, square: float, rate: float, step: float, w: Work) -> None:
-    """Torque and slope of spring, hinges and damper of one connection at its angle."""
-    angle = w.angle[e]
-    stiffness = c.stiffness[e] + square * c.centrifugal[e]
-    torque, slope = stiffness * angle + c.damping[e] * rate, stiffness + c.damping[e] / step
-    for h in range(c.hinge_start[e], c.hinge_start[e + 1]):
-        side, change, delay = c.side[h], c.change[h], c.contact_time[h]
-        beyond = depth(angle, rate, c.gap[h], side, delay)
+def _springs(c: Connected, square: float, step: float, w: Work) -> None:
+    """Torques and slopes of springs, hinges and dampers at their angles and rates."""
+    hinges = c.hinges
+    for e in range(w.angle.size):
+        stiffness = c.constants[SPRING, e] + square * c.constants[CENTRIFUGAL, e]
+        w.spring[e] = stiffness * w.angle[e] + c.constants[DAMPER, e] * w.rate[e]
+        w.spring_slope[e] = stiffness + c.constants[DAMPER, e] / step
+    for h in range(hinges.of.size):
+        e, side, delay = hinges.of[h], hinges.values[SIDE, h], hinges.values[CONTACT_TIME, h]
+        beyond = depth(w.angle[e], w.rate[e], hinges.values[GAP, h], side, delay)
         if beyond > 0.0:
-            torque += side * change * beyond
-            slope += change * (1.0 + delay / step)
-    w.spring[e], w.spring_slope[e] = torque, slope
+            w.spring[e] += side * hinges.values[CHANGE, h] * beyond
+            w.spring_slope[e] += hinges.values[CHANGE, h] * (1.0 + delay / step)
 
 
 @uncounted()
-def _load(c: Connected, e: int, square: float, w: Work) -> float:
-    """The normal load of one connection under the springs' torques."""
-    load = c.load_constant[e] + square * c.load_centrifugal[e]
-    for k in range(c.load_start[e], c.load_start[e + 1]):
-        load += c.load_share[k] * abs(w.spring[c.load_of[k]])
-    return float(max(0.0, load))
-
-
-@uncounted()
-def _law(c: Connected, e: int, square: float, rate: float, memory: float, step: float, w: Work) -> None:
-    """Adds the law of one connection; its torque is a straight line in the normal load, whose slope is a chord's."""
-    told_by = law_at(c.address[e])
-    values = w.law_values[c.law_start[e] : c.law_start[e + 1]]
-    place = c.load_place[e]
-    if place >= 0:
-        w.load[e] = _load(c, e, square, w)
+def _law(c: Connected, l: int, square: float, memory: Array, step: float, w: Work) -> None:
+    """Adds one law; its torque is a straight line in the normal load, whose slope is a chord's."""
+    places, values = c.laws.places, w.law_values
+    e, at, torque = places[LAW_OF, l], places[LOAD_AT, l], law_at(places[ADDRESS, l])
+    own = values[places[START, l] : places[STOP, l]]
+    if at >= 0:
+        w.load[e] = normal_load(c.laws, l, 1.0, square, w.spring)
         more = max(w.load[e], 1.0)
-        values[place] = w.load[e] + more
-        w.load_slope[e] = told_by(values, w.angle[e], rate, memory, step)[0]
-        values[place] = w.load[e]
-    told = told_by(values, w.angle[e], rate, memory, step)
+        values[at] = w.load[e] + more
+        w.load_slope[e] = torque(own, w.angle[e], w.rate[e], memory[e], step)[0]
+        values[at] = w.load[e]
+    told = torque(own, w.angle[e], w.rate[e], memory[e], step)
     w.torque[e] += told[0]
     w.slope[e] += told[1] + told[2] / step
     w.memory[e] = told[4]
-    if place >= 0:
+    if at >= 0:
         w.load_slope[e] = (w.load_slope[e] - told[0]) / more
 
 
@@ -107,10 +115,11 @@ def evaluate(c: Connected, square: float, old: Array, place: Array, memory: Arra
 
     ``old``, ``place`` (coordinates,), ``memory`` (E,) before the step.
     """
-    for e in range(c.stiffness.size):
+    for e in range(w.angle.size):
         w.angle[e] = row_product(c.rows, e, place)
-        _spring(c, e, square, (w.angle[e] - row_product(c.rows, e, old)) / step, step, w)
+        w.rate[e] = (w.angle[e] - row_product(c.rows, e, old)) / step
+    _springs(c, square, step, w)
+    for e in range(w.angle.size):
         w.torque[e], w.slope[e] = w.spring[e], w.spring_slope[e]
-    for e in range(c.stiffness.size):
-        if c.address[e] != 0:
-            _law(c, e, square, (w.angle[e] - row_product(c.rows, e, old)) / step, memory[e], step, w)
+    for l in range(c.laws.places.shape[1]):
+        _law(c, l, square, memory, step, w)

@@ -12,29 +12,24 @@ from typing import NamedTuple
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.hinge import wrongly
-from torsional.numerics.stepping.plan import (
+from torsional.numerics.motion.data import (
     ADDRESS,
     CENTRIFUGAL,
     CHANGE,
     DAMPER,
     GAP,
     LAW_OF,
-    LEFT,
     LOAD_AT,
-    LOAD_CONSTANT,
-    LOAD_SQUARED,
     REMEMBERS,
-    RIGHT,
-    SHARES_START,
-    SHARES_STOP,
     SIDE,
     SPRING,
     START,
     STOP,
     HingeRows,
     Laws,
-    Pairs,
 )
+from torsional.numerics.motion.normal_load import normal_load
+from torsional.numerics.stepping.plan import LEFT, RIGHT, Pairs
 from torsional.numerics.stepping.state import LAW_TORQUE, LOAD, MEMORY, OFFSET, RATE, TORQUE, TWIST
 from torsional.numerics.uncounted import inner, merged
 
@@ -153,15 +148,11 @@ def turn(hinges: HingeRows, bent: Array, now: Array, one: bool) -> None:
 @inner()
 def press(laws: Laws, now: Array, bent: Bent, squared: float) -> None:
     """Normal loads N of the laws that have one, from Ω² = ``squared`` and the torques of now."""
-    places = laws.places
+    places, torque = laws.places, now[TORQUE]
     for l in range(places.shape[1]):
-        if places[LOAD_AT, l] < 0:
-            continue
-        total = laws.loads[LOAD_CONSTANT, l] * bent.laws[LEVEL, l] + laws.loads[LOAD_SQUARED, l] * squared
-        for k in range(places[SHARES_START, l], places[SHARES_STOP, l]):
-            total += laws.shares[k] * abs(now[TORQUE, laws.load_of[k]])
-        bent.laws[LOAD, l] = max(0.0, total)
-        bent.values[places[LOAD_AT, l]] = bent.laws[LOAD, l]
+        if places[LOAD_AT, l] >= 0:
+            bent.laws[LOAD, l] = normal_load(laws, l, bent.laws[LEVEL, l], squared, torque)
+            bent.values[places[LOAD_AT, l]] = bent.laws[LOAD, l]
 
 
 @inner()

@@ -11,8 +11,7 @@ from __future__ import annotations
 from torsional.numerics.arrays import Array
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.hinge import depth
-from torsional.numerics.stepping.forces import DAMPING, DELAY, FACING, Bent
-from torsional.numerics.stepping.plan import (
+from torsional.numerics.motion.data import (
     ADDRESS,
     CENTRIFUGAL,
     CHANGE,
@@ -27,9 +26,9 @@ from torsional.numerics.stepping.plan import (
     STOP,
     HingeRows,
     Laws,
-    Masses,
-    Plan,
 )
+from torsional.numerics.stepping.forces import DAMPING, DELAY, FACING, Bent
+from torsional.numerics.stepping.plan import Masses, Plan
 from torsional.numerics.stepping.state import (
     ACCELERATION,
     EXTERNAL,

@@ -6,9 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.motion.data import LAW_OF, LOAD_AT, SIDE, HingeRows
 from torsional.numerics.stepping.forces import CONNECTION_ROWS, FACING, LAW_ROWS, LEVEL, Bent
 from torsional.numerics.stepping.ledger import book, stored
-from torsional.numerics.stepping.plan import LAW_OF, LOAD_AT, SIDE, HingeRows, Masses, Plan
+from torsional.numerics.stepping.plan import Masses, Plan
 from torsional.numerics.stepping.settle import settle
 from torsional.numerics.stepping.state import (
     ACCELERATION,

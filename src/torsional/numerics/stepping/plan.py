@@ -8,22 +8,26 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.arrays import Array
 from torsional.numerics.linear.sparse_factor import PlaceArray, Tape, places, tape_of
-from torsional.numerics.motion.data import Connected, Equations, Rows
+from torsional.numerics.motion.data import (
+    CENTRIFUGAL,
+    CHANGE,
+    CONTACT_TIME,
+    FOLLOW,
+    LOAD_AT,
+    MEAN_RATE,
+    Equations,
+    HingeRows,
+    Laws,
+    Rows,
+)
 from torsional.numerics.motion.tables import Outside, outside_of
 
 LEFT, RIGHT = range(2)
 """Rows of ``ends``; LEFT is also that of a coordinate or connection in ``extra_at``, RIGHT that of its coordinate."""
-SPRING, DAMPER, CENTRIFUGAL, FOLLOW, MEAN_RATE = range(5)
-"""Rows of ``constants`` (5, E): what `Connected` tells of each connection."""
-GAP, SIDE, CHANGE, CONTACT_TIME, PACE = range(5)
-"""Rows of the hinges' ``values``."""
-LAW_OF, ADDRESS, REMEMBERS, START, STOP, LOAD_AT, LOAD_LEVEL, SHARES_START, SHARES_STOP = range(9)
-"""Rows of the laws' ``places``: connection, kernel, memory, ``values``, place of the load there or −1, level and
-``shares`` of the load."""
-LOAD_CONSTANT, LOAD_SQUARED = range(2)
-"""Rows of the laws' ``loads``: that part of the load which follows a level, and that which follows Ω²."""
+PACE = CONTACT_TIME + 1
+"""Row that a plan adds to the hinges' ``values``: sqrt(Δk wᵀM⁻¹w) [rad/s], the pace of the contact alone."""
 ROW, SLOT = range(2)
 """Rows of a fill's ``at``."""
 
@@ -46,30 +50,6 @@ class Masses(NamedTuple):
     above_at: PlaceArray
     above: Array
     slots: Array
-
-
-class HingeRows(NamedTuple):
-    """Hinges (H,) of connections ``of``, ``values`` (5, H); PACE = sqrt(Δk wᵀM⁻¹w) [rad/s] is that of the contact
-    alone."""
-
-    of: PlaceArray
-    values: Array
-
-
-class Laws(NamedTuple):
-    """Laws (L,) by address: ``places`` (9, L), their ``values`` end to end, ``loads`` (2, L), and the connections with
-    the ``shares`` of their torques that a load follows."""
-
-    places: IntArray
-    values: Array
-    loads: Array
-    load_of: PlaceArray
-    shares: Array
-
-    @property
-    def of(self) -> IntArray:
-        """Their connections."""
-        return np.asarray(self.places[LAW_OF])
 
 
 class Fill(NamedTuple):
@@ -99,33 +79,30 @@ class Plan(NamedTuple):
 
 def prepare(equations: Equations) -> Plan:
     """The plan of a system.  Raises ModelError for numbers that are not finite, and where nothing moves."""
-    n, connected = equations.coordinates, equations.connected
+    n, connected, cranks = equations.coordinates, equations.connected, equations.driven.crank_rows
     _refuse(equations)
-    M = mass_matrix(equations)
-    found = [support(rows) for rows in (equations.mass_rows, connected.rows, equations.driven.crank_rows)]
+    M, constants = mass_matrix(equations), connected.constants
+    found = [support(rows) for rows in (equations.mass_rows, connected.rows, cranks)]
     tape = tape_of([one for group in found for one in group if len(one) > 1], n)
     slot = _slots(tape)
-    counts, cranks = np.diff(connected.hinge_start), equations.driven.crank_rows
-    bends = (counts > 0) | (connected.address != 0) | (connected.centrifugal != 0.0)
+    bends = constants[CENTRIFUGAL] != 0.0
+    bends[connected.hinges.of] = bends[connected.laws.of] = True
     return Plan(
         tape=tape,
         outside=outside_of(equations),
-        constants=np.array([getattr(connected, name) for name in _CONSTANTS]),
+        constants=constants,
         masses=_masses(M, tape),
         pairs=_pairs(connected.rows),
-        hinges=_hinges(equations, M, counts),
-        laws=_laws(connected),
+        hinges=_paced(equations, M),
+        laws=connected.laws,
         fill=_filled(
             _entries(connected.rows, np.flatnonzero(~bends), slot),
             _entries(connected.rows, np.flatnonzero(bends), slot),
             _entries(cranks, np.arange(len(found[2])), slot),
         ),
-        moving=bool((connected.follow.any() and np.isfinite(equations.reference_time)) or connected.mean_rate.any()),
-        spinning=bool(connected.centrifugal.any() or (connected.load_place >= 0).any()),
+        moving=bool((constants[FOLLOW].any() and np.isfinite(equations.reference_time)) or constants[MEAN_RATE].any()),
+        spinning=bool(constants[CENTRIFUGAL].any() or (connected.laws.places[LOAD_AT] >= 0).any()),
     )
-
-
-_CONSTANTS = ("stiffness", "damping", "centrifugal", "follow", "mean_rate")
 
 
 def support(rows: Rows) -> list[set[int]]:
@@ -158,9 +135,10 @@ def _refuse(equations: Equations) -> None:
     """Numbers that would only come back as numbers that are none."""
     if equations.coordinates < 1:
         raise ModelError("nothing moves", found="no coordinates", remedy="leave a node free")
+    c = equations.connected
     groups: Mapping[str, tuple[object, ...]] = {
         "inertia": (equations.inertia,),
-        "connections": tuple(equations.connected),
+        "connections": (*c.rows, c.constants, *c.hinges, *c.laws),
         "sources": tuple(equations.driven),
         "governors": (equations.governed.proportional, equations.governed.integral),
         "frame": (equations.frame_time, equations.frame_value),
@@ -201,25 +179,12 @@ def _pairs(rows: Rows) -> Pairs:
     return Pairs(ends, weights, at, np.array([w for _, _, w in extra], dtype=float))
 
 
-def _hinges(equations: Equations, M: Array, counts: IntArray) -> HingeRows:
-    connected = equations.connected
-    of = np.repeat(np.arange(counts.size), counts)
-    w = dense(connected.rows, equations.coordinates)
+def _paced(equations: Equations, M: Array) -> HingeRows:
+    of, values = equations.connected.hinges
+    w = dense(equations.connected.rows, equations.coordinates)
     heavy = M + np.diag(np.where(np.diag(M) > 0.0, 0.0, 1e-12 * max(np.abs(M).max(), 1e-300)))
     mobility = np.einsum("ei,ie->e", w, np.linalg.solve(heavy, w.T))[of]
-    pace = np.sqrt(np.maximum(connected.change * mobility, 0.0))
-    values = (connected.gap, connected.side, connected.change, connected.contact_time, pace)
-    return HingeRows(places(of), np.array(values))
-
-
-def _laws(connected: Connected) -> Laws:
-    c, of = connected, np.flatnonzero(connected.address)
-    load, start = c.load_place[of], c.law_start[of]
-    at = np.where(load >= 0, start + load, -1)
-    shares = c.load_start[of], c.load_start[of + 1]
-    table = (of, c.address[of], c.remembers[of], start, c.law_start[of + 1], at, c.load_level[of], *shares)
-    loads = np.array([c.load_constant[of], c.load_centrifugal[of]])
-    return Laws(np.array(table, dtype=np.int64), c.law_values, loads, places(c.load_of), c.load_share)
+    return HingeRows(of, np.vstack([values, np.sqrt(np.maximum(values[CHANGE] * mobility, 0.0))]))
 
 
 Entries = Sequence[tuple[int, int, float]]

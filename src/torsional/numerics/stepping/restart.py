@@ -4,29 +4,23 @@
 from __future__ import annotations
 
 from torsional.numerics.arrays import Array
-from torsional.numerics.motion.sources import frame_at, level_at, row_product, source_torques
-from torsional.numerics.motion.tables import Outside
-from torsional.numerics.stepping.forces import FACING, LEVEL, Bent, gather, scatter, scatter_one
-from torsional.numerics.stepping.ledger import stored
-from torsional.numerics.stepping.plan import (
+from torsional.numerics.motion.data import (
     CENTRIFUGAL,
     CHANGE,
     CONTACT_TIME,
     DAMPER,
     GAP,
     LAW_OF,
-    LOAD_AT,
-    LOAD_CONSTANT,
-    LOAD_LEVEL,
-    LOAD_SQUARED,
     MEAN_RATE,
-    SHARES_START,
-    SHARES_STOP,
     SIDE,
     SPRING,
     HingeRows,
-    Plan,
 )
+from torsional.numerics.motion.sources import frame_at, row_product, source_torques
+from torsional.numerics.motion.tables import Outside
+from torsional.numerics.stepping.forces import FACING, LEVEL, Bent, gather, scatter, scatter_one
+from torsional.numerics.stepping.ledger import stored
+from torsional.numerics.stepping.plan import Plan
 from torsional.numerics.stepping.start import SHORT, at_rest
 from torsional.numerics.stepping.state import (
     ACCELERATION,
@@ -99,18 +93,11 @@ def _close(constants: Array, hinges: HingeRows, squared: float, at: Array, sense
 @inner()
 def _bend(plan: Plan, state: State, values: Array, h: float) -> None:
     """Normal loads, torques and memories of the laws."""
-    laws, places, outside = plan.laws, plan.laws.places, plan.outside
+    outside = plan.outside
     for i in range(values.size):
-        values[i] = laws.values[i]
-    for l in range(places.shape[1]):
-        state.law[LOAD, l] = 0.0
-        if places[LOAD_AT, l] >= 0:
-            level = level_at(outside.level_start, outside.knots, places[LOAD_LEVEL, l], 0.0)
-            load = laws.loads[LOAD_CONSTANT, l] * level + laws.loads[LOAD_SQUARED, l] * state.reference[SQUARED]
-            for k in range(places[SHARES_START, l], places[SHARES_STOP, l]):
-                load += laws.shares[k] * abs(state.connection[TORQUE, laws.load_of[k]])
-            state.law[LOAD, l] = values[places[LOAD_AT, l]] = max(0.0, load)
-    at_rest(places, values, state.connection, state.law, max(h, SHORT))
+        values[i] = plan.laws.values[i]
+    squared, levels = state.reference[SQUARED], (outside.level_start, outside.knots)
+    at_rest(plan.laws, *levels, 0.0, squared, values, state.connection, state.law, max(h, SHORT))
 
 
 @inner()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from torsional.numerics.arrays import Array
+from torsional.numerics.motion.data import Laws
 from torsional.numerics.stepping.forces import (
     BUILT,
     SLOPE,
@@ -16,7 +17,7 @@ from torsional.numerics.stepping.forces import (
     torques,
     turn,
 )
-from torsional.numerics.stepping.plan import Laws, Plan
+from torsional.numerics.stepping.plan import Plan
 from torsional.numerics.stepping.state import (
     ACCELERATION,
     DELTA,

@@ -10,9 +10,7 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import law_at
 from torsional.numerics.hinge import depth
-from torsional.numerics.motion.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
-from torsional.numerics.stepping.ledger import stored
-from torsional.numerics.stepping.plan import (
+from torsional.numerics.motion.data import (
     ADDRESS,
     CENTRIFUGAL,
     CHANGE,
@@ -21,24 +19,18 @@ from torsional.numerics.stepping.plan import (
     FOLLOW,
     GAP,
     LAW_OF,
-    LEFT,
-    LOAD_AT,
-    LOAD_CONSTANT,
-    LOAD_LEVEL,
-    LOAD_SQUARED,
     MEAN_RATE,
     REMEMBERS,
-    RIGHT,
-    SHARES_START,
-    SHARES_STOP,
     SIDE,
     SPRING,
     START,
     STOP,
-    Plan,
-    dense,
-    matrix_of,
+    Laws,
 )
+from torsional.numerics.motion.normal_load import press
+from torsional.numerics.motion.sources import crank_terms, frame_at, govern, row_product, source_torques
+from torsional.numerics.stepping.ledger import stored
+from torsional.numerics.stepping.plan import LEFT, RIGHT, Plan, dense, matrix_of
 from torsional.numerics.stepping.state import (
     ACCELERATION,
     EXTERNAL,
@@ -158,22 +150,29 @@ def _close(plan: Plan, state: State, weights: Array) -> tuple[Array, Array]:
 
 def _bend(plan: Plan, state: State, time: float, step: float) -> None:
     """Normal loads, torques and memories of the laws."""
-    laws, places, outside = plan.laws, plan.laws.places, plan.outside
-    values = laws.values.copy()
-    for l in np.flatnonzero(places[LOAD_AT] >= 0):
-        level = level_at(outside.level_start, outside.knots, places[LOAD_LEVEL, l], time)
-        own = slice(places[SHARES_START, l], places[SHARES_STOP, l])
-        shared = laws.shares[own] @ np.abs(state.connection[TORQUE, laws.load_of[own]])
-        total = laws.loads[LOAD_CONSTANT, l] * level + laws.loads[LOAD_SQUARED, l] * state.reference[SQUARED] + shared
-        state.law[LOAD, l] = values[places[LOAD_AT, l]] = max(0.0, total)
-    at_rest(places, values, state.connection, state.law, step)
+    outside, squared = plan.outside, float(state.reference[SQUARED])
+    values, levels = plan.laws.values.copy(), (outside.level_start, outside.knots)
+    at_rest(plan.laws, *levels, time, squared, values, state.connection, state.law, step)
 
 
 @uncounted()
-def at_rest(places: IntArray, values: Array, connection: Array, law: Array, step: float) -> None:
-    """Torques of the laws where no time passes; the strain energy of those without memory counts from here."""
+def at_rest(
+    laws: Laws,
+    level_start: IntArray,
+    knots: Array,
+    time: float,
+    squared: float,
+    values: Array,
+    connection: Array,
+    law: Array,
+    step: float,
+) -> None:
+    """Loads, into ``values`` too, and torques of the laws at a ``time`` where none passes; the strain energy of those
+    without memory counts from here."""
+    places, springs = laws.places, connection[TORQUE]
     for l in range(places.shape[1]):
         e, torque, memory = places[LAW_OF, l], law_at(places[ADDRESS, l]), law[MEMORY, l]
+        law[LOAD, l] = press(laws, level_start, knots, l, time, squared, springs, values)
         own = values[places[START, l] : places[STOP, l]]
         told = torque(own, connection[TWIST, e], connection[RATE, e], memory, 0.0)
         soon = torque(own, connection[TWIST, e], connection[RATE, e], memory, step)

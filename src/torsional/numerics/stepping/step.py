@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.linear.sparse_factor import Tape, factor, substitute
-from torsional.numerics.motion.data import Rows
+from torsional.numerics.motion.data import CONTACT_TIME, FOLLOW, LAW_OF, LOAD_LEVEL, MEAN_RATE, HingeRows, Rows
 from torsional.numerics.motion.leaking import leak
 from torsional.numerics.motion.sources import crank_terms, frame_at, govern, level_at, row_product, source_torques
 from torsional.numerics.motion.tables import Outside
@@ -33,20 +33,7 @@ from torsional.numerics.stepping.forces import (
     scatter_one,
     tangents,
 )
-from torsional.numerics.stepping.plan import (
-    CONTACT_TIME,
-    FOLLOW,
-    LAW_OF,
-    LOAD_LEVEL,
-    MEAN_RATE,
-    PACE,
-    ROW,
-    SLOT,
-    Fill,
-    HingeRows,
-    Masses,
-    Plan,
-)
+from torsional.numerics.stepping.plan import PACE, ROW, SLOT, Fill, Masses, Plan
 from torsional.numerics.stepping.state import (
     ACCELERATION,
     DELTA,

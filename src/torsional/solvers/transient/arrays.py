@@ -8,9 +8,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from torsional.errors import ModelError, nearest
-from torsional.laws import Contacts, HingeRows, Law, hinge_rows
-from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.motion.data import Connected, Driven, Rows, rows_of
+from torsional.laws import Contacts, Law, hinge_rows, packed
+from torsional.laws import HingeRows as LawRows
+from torsional.numerics.arrays import Array
+from torsional.numerics.linear.sparse_factor import places
+from torsional.numerics.motion.data import Connected, Driven, HingeRows, Laws, Rows, rows_of
 from torsional.stamps import NormalLoad
 from torsional.system import Connections, System
 from torsional.units import GRAVITY
@@ -18,7 +20,6 @@ from torsional.units import GRAVITY
 ROUNDING = 1e-12
 NEARLY, BOUNCING = 0.95, 2000.0
 """Share of a path at which a pendulum without stops is stopped, and by a contact of what rate [rad/s]."""
-_NONE = HingeRows(0.0, *(np.zeros(0),) * 4)
 
 
 def masses(system: System, speed: float, rising: bool = True) -> tuple[Rows, Array]:
@@ -44,35 +45,41 @@ def connected(system: System, levels: Mapping[str, int] | None = None) -> Connec
     """
     c = system.connections
     _refuse_loss(c)
-    hinges = [hinge_rows(law) for law in _stopped(c)]
-    bent = [law if rows is None else None for law, rows in zip(c.laws, hinges, strict=True)]
-    rows = [_NONE if found is None else found for found in hinges]
-    shares = [_shares(c, name, load, bent) for name, load in zip(c.names, c.loads, strict=True)]
+    laws = _stopped(c)
+    hinges = [hinge_rows(law) for law in laws]
+    bent = [law if rows is None else None for law, rows in zip(laws, hinges, strict=True)]
+    softer = np.array([0.0 if rows is None else rows.stiffness for rows in hinges])
     whole = _rotation(c)
-    values = [np.zeros(0) if law is None else np.asarray(law.parameters, dtype=float) for law in bent]
-    return Connected(
-        rows=rows_of(c.weights),
-        stiffness=c.stiffness + np.array([found.stiffness for found in rows]),
-        damping=_copied(c.damping),
-        centrifugal=c.centrifugal_stiffness - _swung(system),
-        follow=np.where(c.whole_speed, 0.0, whole),
-        mean_rate=np.where(c.whole_speed, whole, 0.0),
-        hinge_start=_starts([found.gap for found in rows]),
-        gap=_joined([found.gap for found in rows]),
-        side=_joined([found.side for found in rows]),
-        change=_joined([found.change for found in rows]),
-        contact_time=_joined([found.contact_time for found in rows]),
-        address=_integers([0 if law is None else law.address for law in bent]),
-        law_start=_starts(values),
-        law_values=_joined(values),
-        remembers=_integers([int(law is not None and law.remembers) for law in bent]),
-        load_place=_integers([law.load_place if law and load else -1 for law, load in zip(bent, c.loads, strict=True)]),
-        load_constant=np.array([load.constant if load else 0.0 for load in c.loads]),
-        load_level=_integers([_level(name, load, levels or {}) for name, load in zip(c.names, c.loads, strict=True)]),
-        load_centrifugal=np.array([load.centrifugal if load else 0.0 for load in c.loads]),
-        load_start=_starts(shares),
-        load_of=_integers([j for own in shares for j, _ in own]),
-        load_share=np.array([share for own in shares for _, share in own], dtype=float),
+    following = np.where(c.whole_speed, 0.0, whole), np.where(c.whole_speed, whole, 0.0)
+    constants = (c.stiffness + softer, c.damping, c.centrifugal_stiffness - _swung(system), *following)
+    return Connected(rows_of(c.weights), np.array(constants), _hinges(hinges), _laws(c, bent, levels or {}))
+
+
+def _hinges(found: Sequence[LawRows | None]) -> HingeRows:
+    """The hinges of all connections, one after the other."""
+    listed = [np.zeros((4, 0)) if rows is None else np.array(rows[1:]) for rows in found]
+    of = np.repeat(np.arange(len(listed)), [values.shape[1] for values in listed])
+    return HingeRows(places(of), np.concatenate([np.zeros((4, 0)), *listed], axis=1))
+
+
+def _laws(c: Connections, bent: Sequence[Law | None], levels: Mapping[str, int]) -> Laws:
+    """The other laws, and the loads of those that have one."""
+    values, start, address, remembers = packed(bent)
+    of = np.flatnonzero(address)
+    own = [(c.names[e], c.loads[e], bent[e]) for e in of.tolist()]
+    shares = [_shares(c, name, load, bent) for name, load, _ in own]
+    at = [first + law.load_place if law and load else -1 for first, (_, load, law) in zip(start[of], own, strict=True)]
+    level = [_level(name, load, levels) for name, load, _ in own]
+    ends = np.append(0, np.cumsum([len(each) for each in shares]))
+    table = (of, address[of], remembers[of], start[of], start[of + 1], at, level, ends[:-1], ends[1:])
+    loads = [(load.constant, load.centrifugal) if load else (0.0, 0.0) for _, load, _ in own]
+    listed = [pair for each in shares for pair in each]
+    return Laws(
+        np.array(table, dtype=np.int64),
+        values,
+        np.array(loads, dtype=float).reshape(-1, 2).T.copy(),
+        places(j for j, _ in listed),
+        np.array([share for _, share in listed], dtype=float),
     )
 
 
@@ -173,20 +180,3 @@ def _level(name: str, load: NormalLoad | None, levels: Mapping[str, int]) -> int
         remedy = nearest(load.level, levels)
         raise ModelError("no level over time is given for a normal load", where=name, found=load.level, remedy=remedy)
     return levels[load.level]
-
-
-def _starts(parts: Sequence[Sequence[object] | Array]) -> IntArray:
-    """Where each part starts in a row of all of them, and where the last one ends."""
-    return np.append(0, np.cumsum([len(part) for part in parts])).astype(np.int64)
-
-
-def _joined(parts: Sequence[Array]) -> Array:
-    return np.concatenate([np.zeros(0), *parts])
-
-
-def _integers(values: Sequence[int]) -> IntArray:
-    return np.array(values, dtype=np.int64)
-
-
-def _copied(values: Array) -> Array:
-    return np.array(values, dtype=float)

@@ -8,8 +8,9 @@ import numpy as np
 
 from torsional.laws import Contacts
 from torsional.numerics.arrays import Array
+from torsional.numerics.motion.data import CONTACT_TIME
 from torsional.numerics.stepping.marching import Entry
-from torsional.numerics.stepping.plan import CONTACT_TIME, PACE
+from torsional.numerics.stepping.plan import PACE
 from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.marching import Accuracy, method_share
 from torsional.solvers.transient.problem import Problem

@@ -7,8 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from torsional.errors import ModelError
-from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.arrays import Array
 from torsional.numerics.contacts.step import OneSided
+from torsional.numerics.linear.sparse_factor import PlaceArray
+from torsional.numerics.motion.data import CENTRIFUGAL, DAMPER, MEAN_RATE, SPRING
 from torsional.numerics.stepping.plan import dense, mass_matrix
 from torsional.solvers.transient.problem import Problem
 
@@ -21,7 +23,7 @@ class Parts(NamedTuple):
     damping: Array
     stiffness: Array
     walls: OneSided
-    of: IntArray
+    of: PlaceArray
     side: Array
     rows: Array
     springs: Array
@@ -45,18 +47,18 @@ def parts_of(problem: Problem, what: str) -> Parts:
     c, n = problem.equations.connected, problem.equations.coordinates
     names = problem.system.connections.names
     for wrong, why in (
-        (c.address != 0, "is a law that is no sum of hinges and contacts"),
-        (c.centrifugal != 0, "is stiffened by centrifugal forces"),
-        (c.mean_rate != 0, "counts from the whole speed"),
+        (c.laws.of, "is a law that is no sum of hinges and contacts"),
+        (np.flatnonzero(c.constants[CENTRIFUGAL]), "is stiffened by centrifugal forces"),
+        (np.flatnonzero(c.constants[MEAN_RATE]), "counts from the whole speed"),
     ):
-        if wrong.any():
-            raise ModelError(f"{what} knows linear parts, hinges and contacts; this {why}", where=names[wrong.argmax()])
+        if wrong.size:
+            raise ModelError(f"{what} knows linear parts, hinges and contacts; this {why}", where=names[wrong[0]])
     if problem.equations.driven.pendulums.size:
         raise ModelError(f"{what} knows no pendulums", where="pendulum")
     w, mass = dense(c.rows, n), mass_matrix(problem.equations)
     if np.linalg.matrix_rank(mass, hermitian=True) < n:
         raise ModelError(f"{what} needs a mass at every coordinate", remedy="condense massless ones first")
-    of = np.repeat(np.arange(len(w)), np.diff(c.hinge_start))
-    walls = OneSided(-(w[of] * c.side[:, None]).T, c.side * c.gap, c.change, c.contact_time)
-    damping, stiffness = (w.T * c.damping) @ w, (w.T * c.stiffness) @ w
-    return Parts(mass, damping, stiffness, walls, of, c.side, w, c.stiffness, c.damping)
+    of, (gap, side, change, time) = c.hinges
+    walls = OneSided(-(w[of] * side[:, None]).T, side * gap, change, time)
+    springs, dampers = c.constants[SPRING], c.constants[DAMPER]
+    return Parts(mass, (w.T * dampers) @ w, (w.T * springs) @ w, walls, of, side, w, springs, dampers)

@@ -18,18 +18,8 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.explicit.march import explicit_march
-from torsional.numerics.stepping.plan import (
-    CHANGE,
-    CONTACT_TIME,
-    GAP,
-    LEFT,
-    RIGHT,
-    SIDE,
-    HingeRows,
-    Pairs,
-    dense,
-    mass_matrix,
-)
+from torsional.numerics.motion.data import CENTRIFUGAL, CHANGE, CONTACT_TIME, DAMPER, GAP, SIDE, SPRING, HingeRows
+from torsional.numerics.stepping.plan import LEFT, RIGHT, Pairs, dense, mass_matrix
 from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, starting
@@ -132,11 +122,10 @@ class LooseMotion:
     def rates(self) -> Callable[[float, Array], Array]:
         """ẏ(t, y) of y = (q, q̇), compiled; raises ModelError for more than springs, dampers and hinges."""
         equations, plan = self.problem.equations, self.problem.plan
-        connected = equations.connected
-        if connected.address.any() or plan.pairs.extra.size or connected.centrifugal.any():
+        if plan.laws.of.size or plan.pairs.extra.size or plan.constants[CENTRIFUGAL].any():
             raise ModelError("only springs, dampers and hinges of pairs have this right-hand side")
         inverse = np.asarray(np.linalg.inv(mass_matrix(equations)), dtype=float)
-        springs = np.array([connected.stiffness, connected.damping])
+        springs = plan.constants[[SPRING, DAMPER]]
         frequency, loads = float(self.excitation.orders[1]) * self.speed, self.loads()
 
         def rates(t: float, y: Array) -> Array:
@@ -157,8 +146,8 @@ class LooseMotion:
         def jacobian(t: float, y: Array) -> Array:
             depth = w[of] @ y[:n] - gap + delay * (w[of] @ y[n:])
             closed = np.where(side * depth > 0.0, change, 0.0)
-            k = on.stiffness + np.bincount(of, closed, len(w))
-            c = on.damping + np.bincount(of, closed * delay, len(w))
+            k = on.constants[SPRING] + np.bincount(of, closed, len(w))
+            c = on.constants[DAMPER] + np.bincount(of, closed * delay, len(w))
             lower = [-inverse @ ((w.T * each) @ w) for each in (k, c)]
             return np.block([[np.zeros((n, n)), np.eye(n)], [lower[0], lower[1]]])
 
