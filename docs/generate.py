@@ -45,21 +45,37 @@ def write_all(folder: Path) -> None:
 
 
 def nomenclature(quantities: Mapping[str, Any], names: Mapping[str, Any]) -> str:
-    """A page with a table of the quantities' symbols, names and units, and one of the names in results."""
-    rows = [f"| {q.symbol} | `{name}` | {q.long_name} | {q.unit} |" for name, q in quantities.items()]
-    head = ["# Nomenclature", "", _ABOUT_UNITS, "", "| symbol | name | meaning | unit |", "| --- | --- | --- | --- |"]
-    units = {name: quantities[n.quantity].unit if n.quantity in quantities else "" for name, n in names.items()}
-    told = [f"| `{name}` | {named.meaning} | {units[name]} |" for name, named in names.items()]
-    results = ["", "## Names in results", "", _ABOUT_NAMES, "", "| name | meaning | unit |", "| --- | --- | --- |"]
-    return "\n".join([*head, *rows, *results, *told, ""])
+    """A page: conventions, a table of the quantities' symbols, names and units, and one of the names in results."""
+    rows = [
+        f"| {q.symbol} | `{name}` | {q.long_name} | {q.unit} | {q.shown if q.shown != q.unit else ''} |"
+        for name, q in quantities.items()
+    ]
+    columns = ["| symbol | name | meaning | unit | shown in |", "| --- | --- | --- | --- | --- |"]
+    head = ["# Nomenclature", "", _CONVENTIONS, "", "## Quantities", "", _ABOUT_UNITS, "", *columns]
+    known = {name: quantities.get(named.quantity) for name, named in names.items()}
+    signs = {name: f"{q.symbol} | {q.unit}" if q else " | " for name, q in known.items()}
+    told = [f"| `{name}` | {named.meaning} | {signs[name]} |" for name, named in names.items()]
+    columns = ["| name | meaning | symbol | unit |", "| --- | --- | --- | --- |"]
+    return "\n".join([*head, *rows, "", "## Names in results", "", _ABOUT_NAMES, "", *columns, *told, ""])
 
 
-_ABOUT_UNITS = """Every value inside is in SI units and radians; this table is read from `torsional.units`, the same one
-that reads the units in model files."""
+_CONVENTIONS = r"""What lies along `order` is complex and 0-peak, half of peak-to-peak and √2 times RMS: $x(\alpha) =
+\mathrm{Re} \sum_n X_n e^{\mathrm i n \alpha}$, order 0 the mean. What ends in `_swing` is half the peak-to-peak of
+all orders together, phases kept, what ends in `_bound` the sum of their amplitudes; the irregularity alone is
+peak-to-peak. What lies along `time` or `crank_angle` is as it is at that instant.
 
-_ABOUT_NAMES = """Variables and coordinates of the Datasets that analyses return; a name means the same in all of them.
-`torque` is always a connection's, `mean_torque` the engine's mean. Without a unit: names, counts, and what is of
-several quantities."""
+Orders count cycles per crankshaft revolution. The crank angle α is zero at the firing top dead centre of cylinder 1.
+Angles of nodes are deviations from the mean rotation; a twist is $\varphi = \theta_b - \theta_a$, and a connection's
+torque is positive with it. In the shipped groups `b` is the engine's side: both are positive while the engine
+drives."""
+
+_ABOUT_UNITS = """Every value inside is in SI units and radians; faces (command line, pictures, reports) show some in
+another unit. The table is `torsional.nomenclature`, which reads the units in model files and labels results and
+pictures."""
+
+_ABOUT_NAMES = """Variables and coordinates of the Datasets that analyses return (`torsional.results.NAMES`); a name
+means the same in all of them. `torque` is always a connection's, `mean_torque` the engine's mean. Without a unit:
+names, counts, and what is of several quantities."""
 
 
 def module_names(package: str) -> Iterator[str]:

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -155,6 +156,37 @@ def test_every_module_has_a_floor() -> None:
     floors = set(re.findall(r"[a-z_]+", contract.split("layers =")[1]))
     names = {path.relative_to(ROOT / "src" / "torsional").parts[0].removesuffix(".py") for path in MODULES}
     assert sorted(names - floors - {"__init__", "__main__"}) == []
+
+
+# --- names in words ---
+
+
+def words_of(tree: ast.Module) -> Iterator[str]:
+    """Identifiers of a module, and the words of its short texts: what exists to be named."""
+    for node in ast.walk(tree):
+        for field in ("id", "attr", "name", "arg", "module"):
+            yield from (getattr(node, field, None) or "").split(".")
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and len(node.value) < 60:
+            yield from re.findall(r"\w+", node.value)
+
+
+def docstrings_of(tree: ast.Module) -> Iterator[str]:
+    """The docstrings of a module, of its classes and functions."""
+    kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+    yield from filter(None, (ast.get_docstring(node) for node in ast.walk(tree) if isinstance(node, kinds)))
+
+
+def test_names_in_backticks_exist() -> None:
+    scripts = [path for name in ("tests", "benchmarks", "tools", "examples") for path in (ROOT / name).rglob("*.py")]
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in (*MODULES, *scripts)}
+    pages = [ROOT / "README.md", *(page for page in (ROOT / "docs").rglob("*.md") if "_generated" not in page.parts)]
+    known = {word for tree in trees.values() for word in words_of(tree)} | {path.stem for path in MODULES}
+    known |= {"tv", "md", "py", "pyi", "toml", "yaml", "docs"}
+    told = [text for path in MODULES for text in docstrings_of(trees[path])]
+    told += [page.read_text(encoding="utf-8") for page in pages]
+    quoted = {name for text in told for name in re.findall(r"(?<!`)`{1,2}([A-Za-z_][\w.]*)`{1,2}(?!`)", text)}
+    numbered = {name for name in quoted if re.search(r"\d", name)}  # parts of rows, as arc_1_3
+    assert sorted(name for name in quoted - numbered if not {*filter(None, name.split("."))} <= known) == []
 
 
 # --- documentation ---

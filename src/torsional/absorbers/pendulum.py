@@ -1,4 +1,4 @@
-"""Centrifugal pendulum vibration absorber (CPVA), linearised: an absorber whose stiffness grows with Ω²."""
+"""Centrifugal pendulum vibration absorber (CPVA): a stiffness that grows with Ω², and in time its exact path."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Analyses: one a file, each with one public function."""
+"""Analyses, from a system or a model to a Dataset: one a module, or a package where it takes several."""

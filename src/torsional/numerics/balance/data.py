@@ -186,7 +186,7 @@ def _solved_loaded(
     b: ComplexArray,
     db: ComplexArray,
 ) -> None:
-    """`harmonic_part` by a solve with the load and its derivative as further columns."""
+    """`harmonic_parts` by a solve with the load and its derivative as further columns."""
     c = balance.node_load[at, :, h]
     columns = np.empty((2, c.shape[1]), dtype=np.complex128)
     columns[0] = c[0] + d * (c[1] + d * (c[2] + d * c[3]))
