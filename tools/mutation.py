@@ -96,7 +96,8 @@ def outcome(copy: Copy, names: Names, mutant: Mutant, tests: list[str], allowed:
     path.write_bytes(mutant.applied(source))
     began = time.perf_counter()
     try:
-        environment = copy.environment(copy.without(names.importers(mutant.file)), PYTHONDONTWRITEBYTECODE="1")
+        outdated = names.importers(mutant.file) if names.compiled((mutant.file, mutant.place)) else {mutant.file}
+        environment = copy.environment(copy.without(outdated), PYTHONDONTWRITEBYTECODE="1")
         command = copy.pytest("-x", "-p", "no:xdist", "--hypothesis-seed=0", "--tb=line", f"@{listed}")
         said, code = _run(command, copy, environment, allowed)
     finally:

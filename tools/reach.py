@@ -20,7 +20,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-COMPILING = ("njit", "uncounted", "inlined", "summed", "register_jitable", "intrinsic", "py_func")
+COMPILING = ("njit", "uncounted", "inlined", "inner", "merged", "register_jitable", "intrinsic", "py_func", "lane_program", "_step")
 
 Place = tuple[str, str]
 """A module as its file below the sources, and the dotted name of a function, class or constant there."""
@@ -96,6 +96,12 @@ class _Hooks:
 # --- names ---
 
 
+MAKES_MACHINE_CODE = ("llvmlite", "intrinsic", "piston_position", "lane_program")
+"""Words of files whose plain functions end up in compiled ones."""
+OF_PYTHON = ("checked", "checked_fields", "dataclass", "lru_cache", "functools.cache", "cache")
+"""Decorators of functions that Python runs itself."""
+
+
 class Names:
     """What the functions, classes and constants of a package name, by reading its sources below ``sources``."""
 
@@ -140,6 +146,16 @@ class Names:
         """The file of a dotted module name."""
         base = module.replace(".", "/")
         return f"{base}/__init__.py" if f"{base}/__init__.py" in self.trees else f"{base}.py"
+
+    def compiled(self, place: Place) -> bool:
+        """Whether machine code of other files may hang on a place: not on Python's own functions and methods."""
+        source = (self.sources / place[0]).read_text(encoding="utf-8")
+        node, _ = self.nodes.get((place[0], place[1].partition(".")[0]), (None, False))
+        if node is None or any(word in source for word in MAKES_MACHINE_CODE):
+            return True
+        if isinstance(node, ast.FunctionDef):
+            return any(ast.unparse(each).partition("(")[0] not in OF_PYTHON for each in node.decorator_list)
+        return not isinstance(node, ast.ClassDef)
 
     def resolved(self, place: Place) -> Place | None:
         """A place behind the modules that only pass its name on; None outside the package."""
