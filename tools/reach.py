@@ -20,7 +20,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-COMPILING = ("njit", "uncounted", "inlined", "inner", "merged", "register_jitable", "intrinsic", "py_func", "lane_program", "_step")
+COMPILING = ("njit", "uncounted", "inlined", "inner", "merged", "register_jitable", "intrinsic", "py_func", "_step")
+"""Words of decorators whose functions Python's own profiler does not see."""
 
 Place = tuple[str, str]
 """A module as its file below the sources, and the dotted name of a function, class or constant there."""
