@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import torsional as tv
 from torsional import quantities as q
 from torsional.errors import ModelError
 
@@ -34,6 +35,19 @@ def test_swing_is_below_the_bound_and_exact_for_one_order() -> None:
 def test_irregularity_of_one_order() -> None:
     """ω = Ω + A nΩ cos: (ω_max − ω_min)/Ω = 2 A n."""
     assert float(q.irregularity(ANGLE.sel(order=[3.0]))[0]) == pytest.approx(2 * 1e-3 * 3, rel=1e-4)
+
+
+def test_modes_without_frequency_are_called_what_they_are() -> None:
+    """Nothing pulls a pendulum back that nothing spins; an engine behind an open clutch is a whole that turns."""
+    hung = {"a": tv.Inertia(1.0), "b": tv.Inertia(2.0), "s": tv.Shaft("a", "b", 1e4)}
+    line = tv.assemble(tv.Powertrain({**hung, "p": tv.CentrifugalPendulum("b", 1.0, 0.1, 3.0)}))
+    assert q.named_modes(tv.modal(line), {}) == ["rigid rotation", "free p", "s mode"]
+    assert q.named_modes(tv.modal(line, 100.0), {}) == ["rigid rotation", "s mode", "p.suspension mode"]
+    apart = {**hung, "c": tv.Inertia(2.0), "d": tv.Inertia(1.0), "t": tv.Shaft("c", "d", 2e4)}
+    names = q.named_modes(tv.modal(tv.assemble(tv.Powertrain(apart, parts=2))), {})
+    assert names == ["rigid rotation", "rigid rotation", "s mode", "t mode"]
+    alone = tv.modal(tv.assemble(tv.Powertrain({"a": tv.Inertia(1.0)})))
+    assert q.named_modes(alone, {}) == ["rigid rotation"]
 
 
 def test_order_share_and_missing_order() -> None:

@@ -1,5 +1,19 @@
 """The public names and where they live: the one list, which type checkers, editors and the package itself read."""
 
+from . import (
+    absorbers as absorbers,
+    components as components,
+    engine as engine,
+    errors as errors,
+    files as files,
+    laws as laws,
+    plots as plots,
+    quantities as quantities,
+    report as report,
+    results as results,
+    stamps as stamps,
+    units as units,
+)
 from .absorbers import (
     Absorber as Absorber,
     ArcSprings as ArcSprings,

@@ -122,7 +122,8 @@ def order_share(orders: xr.DataArray, order: float) -> xr.DataArray:
 def dominant_element(modes: xr.Dataset) -> xr.DataArray:
     """The connection with the largest share of each mode's elastic energy, by name ("" for rigid rotation)."""
     share = modes.elastic_share
-    names = share.element.values[share.values.argmax(axis=share.get_axis_num("element"))]
+    axis = share.get_axis_num("element")
+    names = share.element.values[share.values.argmax(axis)] if share.sizes["element"] else ""
     return xr.DataArray(np.where(modes.frequency.values > 0, names, ""), dims="mode", coords={"mode": modes.mode})
 
 
@@ -131,7 +132,8 @@ def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[
     """A name for each mode by where its elastic energy is: the group with the largest share, else the connection.
 
     ``groups``: {"DMF mode": ("dmf",), "clutch mode": ("clutch",)}; a mode is named after a group when the group's share
-    is the largest of all connections'.
+    is the largest of all connections'.  Of modes of frequency zero, one that moves a single node is that node's alone:
+    a pendulum that nothing spins.
     """
     dominant = dominant_element(modes).values
     names = []
@@ -142,8 +144,14 @@ def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[
         largest = max(together, key=lambda name: together[name], default="")
         if element and largest and together[largest] > float(share.max()):
             known = [largest]
-        names.append(known[0] if known else f"{element} mode" if element else "rigid rotation")
+        names.append(known[0] if known else f"{element} mode" if element else _unsprung(modes.isel(mode=mode)))
     return names
+
+
+def _unsprung(mode: xr.Dataset) -> str:
+    """What moves without any spring being twisted: the whole, a part, or one node alone."""
+    moved = mode.node.values[mode["shape"].values != 0].tolist() if "shape" in mode else []
+    return f"free {moved[0]}" if len(moved) == 1 < mode.sizes["node"] else "rigid rotation"
 
 
 @checked

@@ -47,6 +47,24 @@ def test_bad_lines_are_answered_in_one_sentence(
     assert list(Path().iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        (["speed=2500rpm"], ["speed: 2500 rpm is outside the engine's range, 600 rpm to 2000 rpm"]),
+        (["speed=600rpm", "after=2400Nm"], ["after: 2400 Nm is above full load, which is 1300 Nm at 600 rpm"]),
+        (["after=2600Nm"], ["after: 2600 Nm is above full load, which is 2500 Nm at most"]),
+        (["after=2500Nm"], []),
+    ],
+)
+def test_what_the_engine_does_not_have_is_told(
+    torsional: Run, truck: str, settings: list[str], told: list[str]
+) -> None:
+    options = [part for setting in ("duration=0.32s", *settings) for part in ("-s", setting)]
+    answer = torsional("scenario", truck, "tip_in", *options)
+    assert answer.code == 0
+    assert answer.err.splitlines() == [f"warning: {line}" for line in told]
+
+
 def test_a_start_reaches_idle_and_tells_its_peaks(torsional: Run, truck: str) -> None:
     told = torsional("scenario", truck, "engine_start", "-o", "s.json", "-o", "s.nc", "-o", "s.png", "-o", "s.csv")
     assert told.code == 0, told.err

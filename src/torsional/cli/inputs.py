@@ -85,7 +85,7 @@ def torques(model: Model, text: str, count: int) -> Array:
     return found
 
 
-def warn_off_range(model: Model, speeds: Sequence[float] | Array) -> None:
+def warn_off_range(model: Model, speeds: Sequence[float] | Array, where: str = "--speed") -> None:
     """Say that an engine does not run at some of these speeds [rad/s]: neither its curve nor its file knows them."""
     curve = model.full_load_curve
     if "operation" not in model.document and curve is None:
@@ -96,10 +96,10 @@ def warn_off_range(model: Model, speeds: Sequence[float] | Array) -> None:
     if beyond:
         asked = " and ".join(dict.fromkeys(units.show(end, "speed") for end in (min(beyond), max(beyond))))
         span = " to ".join(units.show(end, "speed") for end in (low, high))
-        complain(f"--speed: {asked} is outside the engine's range, {span}", kind="warning")
+        complain(f"{where}: {asked} is outside the engine's range, {span}", kind="warning")
 
 
-def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = ()) -> None:
+def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = (), where: str = "--torque") -> None:
     """Say that a mean torque [Nm] lies above full load at each of the speeds [rad/s], or at any where none is named."""
     curve = model.full_load_curve
     if curve is None:
@@ -111,7 +111,7 @@ def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = (
     if torque > (1 + 1e-9) * most:
         told = f"is above full load, which is {units.show(most, 'torque')}"
         at = f" at {units.show(over[0], 'speed')}" if len(over) == 1 else " at most"
-        complain(f"--torque: {units.show(torque, 'torque')} {told}{at}", kind="warning")
+        complain(f"{where}: {units.show(torque, 'torque')} {told}{at}", kind="warning")
 
 
 def orders(single: Sequence[float] | None, text: str) -> Array | None:
