@@ -20,6 +20,11 @@ def test_values_arrive_in_si(separator: str) -> None:
     assert table["torque"] == pytest.approx([1300.0, 1900.0, 2500.0], rel=1e-15)
 
 
+def test_separators_are_counted_in_front_of_comments() -> None:
+    table = parse_table("speed [rpm]; torque [Nm]  # rig 2, cold, upwards\n600; 1\n700; 2\n", COLUMNS)
+    assert table["torque"] == [1.0, 2.0]
+
+
 def test_columns_come_in_the_order_asked_for() -> None:
     table = parse_table("torque [Nm],speed [rad/s]\n1,2\n3,4\n", COLUMNS)
     assert list(table.items()) == [("speed", [2.0, 4.0]), ("torque", [1.0, 3.0])]

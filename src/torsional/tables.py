@@ -61,9 +61,10 @@ def cells(text: str) -> Cells:
     held = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"]
     if len(held) < 3:
         raise ModelError("a table has a header and at least two rows", found=f"{max(len(held) - 1, 0)} rows")
-    separator = max(",;\t", key=held[0][1].count)
+    header = _HEADER_COMMENT.sub("", held[0][1])
+    separator = max(",;\t", key=header.count)
     try:
-        kept = [_HEADER_COMMENT.sub("", held[0][1]), *(line.partition("#")[0] for _, line in held[1:])]
+        kept = [header, *(line.partition("#")[0] for _, line in held[1:])]
         rows = list(csv.reader(kept, delimiter=separator))
     except csv.Error as error:
         raise ModelError("the table cannot be read", found=str(error)) from None
