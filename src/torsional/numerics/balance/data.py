@@ -222,11 +222,9 @@ def _solved(
     x = np.zeros((n, m + extra), dtype=np.complex128)
     x[:, :m] = balance.weights.T
     x[:, m:] = columns.T
-    if not complex_solve(z.copy(), x):
-        x[:] = np.nan
+    complex_solve(z.copy(), x)
     slope = -(dz @ x)
-    if not complex_solve(z.copy(), slope):
-        slope[:] = np.nan
+    complex_solve(z, slope)
     w = balance.weights.astype(np.complex128)
     value, rise = w @ x, w @ slope
     g[:] = value[:, :m]

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
-from torsional.numerics.linear.exponential import exponential, solve
+from torsional.numerics.linear.exponential import exponential
+from torsional.numerics.linear.small import solve
 from torsional.numerics.piecewise.basis import Coordinates
 
 

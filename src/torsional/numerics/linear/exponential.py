@@ -1,4 +1,4 @@
-"""Matrix exponential and linear equations, compiled, so that compiled loops can call them."""
+"""Matrix exponential, compiled, so that compiled loops can call it."""
 # mypy: disable-error-code="untyped-decorator"
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ import numba
 import numpy as np
 
 from torsional.numerics.arrays import Array
+from torsional.numerics.linear.small import solve
 
 LARGEST = 5.371920351148152  # 1-norm up to which the approximant of degree 13 is exact to rounding
 PADE = (
@@ -25,43 +26,6 @@ PADE = (
     182.0,
     1.0,
 )
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def solve(a: Array, b: Array) -> None:
-    """Overwrite b (n, columns) with a⁻¹ b by elimination with row exchanges, and a with its triangle.
-
-    Quicker to compile than a call of LAPACK with its messages, and for a few dozen unknowns no slower to run.
-    """
-    n = a.shape[0]
-    for k in range(n):
-        best = k
-        for i in range(k + 1, n):
-            best = i if abs(a[i, k]) > abs(a[best, k]) else best
-        _exchange(a[k], a[best])
-        _exchange(b[k], b[best])
-        for i in range(k + 1, n):
-            ratio = a[i, k] / a[k, k]
-            _subtract(a[i], ratio, a[k])
-            _subtract(b[i], ratio, b[k])
-    for k in range(n - 1, -1, -1):
-        for i in range(k + 1, n):
-            _subtract(b[k], a[k, i], b[i])
-        for j in range(b.shape[1]):
-            b[k, j] /= a[k, k]
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _subtract(target: Array, factor: float, row: Array) -> None:
-    if factor != 0.0:
-        for j in range(target.size):
-            target[j] -= factor * row[j]
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _exchange(one: Array, other: Array) -> None:
-    for j in range(one.size):
-        one[j], other[j] = other[j], one[j]
 
 
 @numba.njit(cache=True, error_model="numpy")

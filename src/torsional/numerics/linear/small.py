@@ -78,17 +78,18 @@ def scaled_determinant(a: Array, sign: float, norms: Array) -> float:
     return value
 
 
-@numba.njit(cache=True, error_model="numpy")
-def complex_solve(a: ComplexArray, b: ComplexArray) -> bool:
-    """Solve a x = b in place for the columns of b, by elimination with row exchanges; whether it could be done."""
-    n, columns = a.shape[0], b.shape[1]
+@numba.njit(error_model="numpy", inline="always")
+def _solved(a: Array | ComplexArray, b: Array | ComplexArray) -> None:
+    """Elimination with row exchanges, in the arithmetic of what calls it; b is not a number where a is singular."""
+    n, columns = b.shape
     for k in range(n):
         best, largest = k, abs(a[k, k])
         for i in range(k + 1, n):
             if abs(a[i, k]) > largest:
                 best, largest = i, abs(a[i, k])
         if not largest > 0.0:
-            return False
+            b[:] = np.nan
+            return
         if best != k:
             for j in range(k, n):
                 a[k, j], a[best, j] = a[best, j], a[k, j]
@@ -102,8 +103,27 @@ def complex_solve(a: ComplexArray, b: ComplexArray) -> bool:
                 for j in range(columns):
                     b[i, j] -= ratio * b[k, j]
     for k in range(n - 1, -1, -1):
+        for i in range(k + 1, n):
+            if a[k, i] != 0.0:
+                for j in range(columns):
+                    b[k, j] -= a[k, i] * b[i, j]
         for j in range(columns):
-            for i in range(k + 1, n):
-                b[k, j] -= a[k, i] * b[i, j]
             b[k, j] /= a[k, k]
-    return True
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def solve(a: Array, b: Array) -> None:
+    """Overwrite b (n, columns) with a⁻¹ b, and a with its triangle; b is not a number where a is singular.
+
+    >>> a, b = np.array([[0.0, 2.0], [1.0, 0.0]]), np.array([[2.0], [3.0]])
+    >>> solve(a, b)
+    >>> b.tolist()
+    [[3.0], [1.0]]
+    """
+    _solved(a, b)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def complex_solve(a: ComplexArray, b: ComplexArray) -> None:
+    """The same of complex numbers, whose products are rounded one by one."""
+    _solved(a, b)
