@@ -93,6 +93,11 @@ class Law:
         raise TypeError(f"{type(self).__name__} must define its parameters")
 
     @property
+    def unguarded_stiffness(self) -> float:
+        """Stiffness [Nm/rad] of the stiffest contact whose damper is of a kind that no time step can raise; else 0."""
+        return 0.0
+
+    @property
     def label(self) -> str:
         """What a picture writes beside a law that its stages do not describe; empty of most."""
         return ""

@@ -123,6 +123,11 @@ class Contacts(Law):
         return HingeRows(0.0, *(np.array(column, dtype=float) for column in columns))
 
     @property
+    def unguarded_stiffness(self) -> float:
+        """The largest stiffness [Nm/rad] where the damper is no hinge's."""
+        return 0.0 if self.damper == "held" else max(self.stiffnesses)
+
+    @property
     def edges(self) -> Array:
         """Angles [rad] at which a contact opens or closes, at rest."""
         return np.unique(self.gaps)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from torsional.laws import Contacts
 from torsional.numerics.arrays import Array
 from torsional.numerics.motion.data import CONTACT_TIME
 from torsional.numerics.stepping.marching import Entry
@@ -85,10 +84,8 @@ def _guarded(problem: Problem, standing: Standing | None, step: float) -> dict[s
 def _unguarded(problem: Problem, step: float) -> dict[str, str]:
     """Contacts with a damper of their own kind, which no step can guard, that are stiffer than it can follow."""
     c, M = problem.system.connections, problem.system.M
-    pressed = {i: law for i, law in enumerate(c.laws) if isinstance(law, Contacts) and law.damper != "held"}
-    stiff = {
-        i: max(law.stiffnesses) * (c.weights[i] @ np.linalg.lstsq(M, c.weights[i])[0]) for i, law in pressed.items()
-    }
+    loose = {i: law.unguarded_stiffness for i, law in enumerate(c.laws) if law is not None and law.unguarded_stiffness}
+    stiff = {i: k * (c.weights[i] @ np.linalg.lstsq(M, c.weights[i])[0]) for i, k in loose.items()}
     names = [c.names[i] for i, square in stiff.items() if step * np.sqrt(square) > STIFF]
     if not names:
         return {}
