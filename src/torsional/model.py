@@ -31,7 +31,12 @@ NOTABLE = 0.05
 @dataclass(frozen=True)
 @checked_fields
 class Gear:
-    """One gear: its ``ratio`` and the ``components`` that stand in the line while it is engaged."""
+    """One gear: its ``ratio`` [-], input over output speed, and the ``components`` in the line while it is engaged.
+
+    >>> from torsional.components import GearPair
+    >>> Gear(2.5, {"first": GearPair("input", "output", ratio=2.5)}).components["first"].ratio
+    2.5
+    """
 
     ratio: float
     components: Mapping[str, Component]
@@ -41,7 +46,11 @@ class Gear:
 @checked_fields
 class Operation:
     """Where the machine runs: ``idle`` and ``speed`` (from, to) [rad/s]; ``torque`` (from, to) [Nm] or None for
-    zero to full load."""
+    zero to full load.
+
+    >>> round(Operation().speed[1] / RPM)  # rpm
+    2000
+    """
 
     idle: float = 600 * RPM
     speed: tuple[float, float] = (600 * RPM, 2000 * RPM)
@@ -56,6 +65,9 @@ class Landmarks:
     ``throws``: nodes on which the cylinders act; ``crankshaft``: node that stands for the engine's speed; ``load``:
     node where the mean torque is taken up; ``input``: the node to be kept quiet (gearbox input); ``springs``: the
     absorber's connections; ``clutch``: the clutch damper.
+
+    >>> Landmarks(crankshaft="throw6", input="gearbox_input").observed_nodes
+    ('throw6', 'gearbox_input')
     """
 
     throws: tuple[str, ...] = ()
@@ -83,6 +95,11 @@ class Model:
 
     ``absorber`` is the one whose parts stand among the components, None without; ``document`` the parsed model file
     (for provenance and changed copies), empty once anything else was changed in Python.
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> pair = {"a": Inertia(1.8), "b": Inertia(1.2), "s": Shaft("a", "b", 12e3)}
+    >>> Model("pair", pair, Landmarks()).replaced("s", stiffness=10e3).powertrain()["s"].stiffness
+    10000.0
     """
 
     name: str

@@ -39,7 +39,12 @@ def acceleration(angle: xr.DataArray) -> xr.DataArray:
 
 @checked
 def angular_velocity(angle: xr.DataArray) -> xr.DataArray:
-    """Speed fluctuation orders i nΩ θ_n [rad/s], complex 0-peak."""
+    """Speed fluctuation orders i nΩ θ_n [rad/s], complex 0-peak, from angle orders [rad] over speed.
+
+    >>> theta = xr.DataArray([[1e-3 + 0j]], coords={"speed": [100.0], "order": [3.0]})
+    >>> round(float(abs(angular_velocity(theta)).max()), 9)
+    0.3
+    """
     found = 1j * angle.order * angle.speed * angle
     return _as(found.transpose(*angle.dims), "angular_velocity", amplitude="complex 0-peak")
 
@@ -56,6 +61,10 @@ def waveform(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     """The signal over one cycle of 720°, phase-true: Re Σ_n X_n exp(i n α); ``order`` becomes ``crank_angle``.
 
     Orders that are no multiples of one half take several `cycles` to repeat themselves, which are then all told.
+
+    >>> orders = xr.DataArray([3.0, 4.0j], coords={"order": [3.0, 6.0]})
+    >>> waveform(orders, samples=720).values[:3].round(3).tolist()  # every degree
+    [3.0, 2.578, 2.152]
     """
     alpha = np.arange(samples * cycles(orders)) * (4 * np.pi / samples)
     rest = [dim for dim in orders.dims if dim != "order"]
@@ -73,7 +82,11 @@ def _synthesized(values: ComplexArray, phase: Array) -> Array:
 
 @checked
 def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
-    """Half the peak-to-peak swing of the signal over one cycle, phases kept."""
+    """Half the peak-to-peak swing of the signal over one cycle, phases kept, in the unit of ``orders``.
+
+    >>> round(float(swing(xr.DataArray([3.0, 4.0j], coords={"order": [3.0, 6.0]}))), 3)
+    6.244
+    """
     rest = [dim for dim in orders.dims if dim != "order"]
     values = orders.transpose(*rest, "order")
     phase = np.outer(values.order.values, np.arange(samples * cycles(orders)) * (4 * np.pi / samples))
@@ -87,13 +100,21 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
 
 @checked
 def order_sum(orders: xr.DataArray) -> xr.DataArray:
-    """Σ_n |X_n|: no signal with these orders swings further; it is a bound and not the swing."""
+    """Σ_n |X_n|: no signal with these orders swings further; it is a bound and not the swing.
+
+    >>> float(order_sum(xr.DataArray([3.0, 4.0j], coords={"order": [3.0, 6.0]})))
+    7.0
+    """
     return abs(orders).sum("order").assign_attrs({**orders.attrs, "amplitude": "bound, sum of 0-peak orders"})
 
 
 @checked
 def amplitude(orders: xr.DataArray, order: float) -> xr.DataArray:
-    """|X_n| of one order, 0-peak; raises ModelError for an order that was not computed."""
+    """|X_n| of one order, 0-peak; raises ModelError for an order that was not computed.
+
+    >>> float(amplitude(xr.DataArray([3.0, 4.0j], coords={"order": [3.0, 6.0]}), 6.0))
+    4.0
+    """
     if float(order) not in orders.order.values:
         known = ", ".join(f"{n:g}" for n in orders.order.values)
         raise ModelError(f"order {order:g} was not computed", where="order", allowed=known)
@@ -105,6 +126,10 @@ def irregularity(angle: xr.DataArray) -> xr.DataArray:
     """Cyclic irregularity (ω_max − ω_min)/ω_mean [-] of each node, by its own mean speed.
 
     A coordinate ``speed_ratio`` (node), as results carry it, gives that speed; without it nodes turn at engine speed.
+
+    >>> theta = xr.DataArray([[2e-3 + 0j]], coords={"speed": [100.0], "order": [3.0]})
+    >>> irregularity(theta).values.round(9).tolist()  # 2 n |θ_n| of a single order
+    [0.012]
     """
     mean = angle.speed * abs(angle.speed_ratio) if "speed_ratio" in angle.coords else angle.speed
     found = 2 * swing(angular_velocity(angle)) / mean.where(mean > 0)
@@ -113,14 +138,24 @@ def irregularity(angle: xr.DataArray) -> xr.DataArray:
 
 @checked
 def order_share(orders: xr.DataArray, order: float) -> xr.DataArray:
-    """Share [-] of one order in the oscillation's mean square, |X_n|² / Σ|X|²."""
+    """Share [-] of one order in the oscillation's mean square, |X_n|² / Σ|X|².
+
+    >>> float(order_share(xr.DataArray([3.0, 4.0j], coords={"order": [3.0, 6.0]}), 6.0))
+    0.64
+    """
     power = abs(orders) ** 2
     return _as(power.sel(order=float(order)) / power.sum("order"), "energy_share")
 
 
 @checked
 def dominant_element(modes: xr.Dataset) -> xr.DataArray:
-    """The connection with the largest share of each mode's elastic energy, by name ("" for rigid rotation)."""
+    """The connection with the largest share of each mode's elastic energy, by name ("" for rigid rotation).
+
+    >>> share = xr.DataArray([[0.8, 0.2]], coords={"mode": [1], "element": ["dmf", "clutch"]})
+    >>> modes = xr.Dataset({"elastic_share": share, "frequency": ("mode", [9.0])})
+    >>> dominant_element(modes).values.tolist(), named_modes(modes, {"DMF mode": ("dmf",)})
+    (['dmf'], ['DMF mode'])
+    """
     share = modes.elastic_share
     axis = share.get_axis_num("element")
     names = share.element.values[share.values.argmax(axis)] if share.sizes["element"] else ""
@@ -134,6 +169,10 @@ def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[
     ``groups``: {"DMF mode": ("dmf",), "clutch mode": ("clutch",)}; a mode is named after a group when the group's share
     is the largest of all connections'.  Of modes of frequency zero, one that moves a single node is that node's alone:
     a pendulum that nothing spins.
+
+    >>> share = xr.DataArray([[0.1, 0.9]], coords={"mode": [1], "element": ["dmf", "clutch"]})
+    >>> named_modes(xr.Dataset({"elastic_share": share, "frequency": ("mode", [24.0])}), {"DMF mode": ("dmf",)})
+    ['clutch mode']
     """
     dominant = dominant_element(modes).values
     names = []
@@ -156,5 +195,9 @@ def _unsprung(mode: xr.Dataset) -> str:
 
 @checked
 def order_speed(frequency: xr.DataArray, order: float) -> xr.DataArray:
-    """The engine speed [rad/s] at which an engine order meets a frequency [Hz]: Ω = 2π f/n (20 f rpm for the third)."""
+    """The engine speed [rad/s] at which an engine order meets a frequency [Hz]: Ω = 2π f/n (20 f rpm for the third).
+
+    >>> order_speed(xr.DataArray([50.0]), 3.0).values.round(3).tolist()  # 1000 rpm
+    [104.72]
+    """
     return _as(2 * np.pi * frequency / order, "speed")

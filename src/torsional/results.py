@@ -235,6 +235,12 @@ def save_results(result: xr.Dataset | xr.DataArray, path: str | Path) -> Path:
 
     The file appears whole or not at all: it is written beside its place and then moved there.  Raises ModelError for
     any other ending.
+
+    >>> import tempfile
+    >>> made = dataset({"mean_torque": (("speed",), [1e3], "torque")}, {"speed": ([90.0], "speed")}, analysis="example")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_results(made, f"{folder}/map.csv").read_text(encoding="utf-8-sig").splitlines()[-1]
+    '90.0,859.4366926962349,1000.0'
     """
     target = Path(path)
     if target.suffix.lower() not in _WRITERS:
@@ -269,7 +275,14 @@ def _split(values: xr.DataArray) -> xr.Variable:
 
 @checked
 def load_results(path: str | Path) -> xr.Dataset:
-    """Read what `save_results` wrote, complex values joined again; raises ModelError for anything else."""
+    """Read what `save_results` wrote, complex values joined again; raises ModelError for anything else.
+
+    >>> import tempfile
+    >>> made = dataset({"mean_torque": (("speed",), [1e3], "torque")}, {"speed": ([90.0], "speed")}, analysis="example")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     load_results(save_results(made, f"{folder}/map.nc")).mean_torque.values.tolist()
+    [1000.0]
+    """
     try:
         with xr.open_dataset(path, engine="h5netcdf") as opened:
             found = opened.load()

@@ -40,7 +40,11 @@ class SpeedSwitch:
 @dataclass(frozen=True, slots=True)
 @checked_fields
 class Mass:
-    """Kinetic energy ½ J (w·θ̇)² with ``inertia`` J [kgm²], or that of ``switch`` above its speed."""
+    """Kinetic energy ½ J (w·θ̇)² with ``inertia`` J [kgm²], or that of ``switch`` above its speed.
+
+    >>> Mass("planets", {"carrier": -1.0, "ring": 2.0}, 0.01).weights["ring"]
+    2.0
+    """
 
     name: str
     weights: Weights
@@ -130,6 +134,9 @@ class Connection:
     belong to the mean torque, such a law is left out.  ``swing``: the path of the pendulum it suspends, for motion in
     time.
     Raises ModelError for a load beside a law that takes none.
+
+    >>> Connection("shaft", {"a": -1.0, "b": 1.0}, stiffness=12e3).stiffness
+    12000.0
     """
 
     name: str
@@ -160,7 +167,11 @@ class Connection:
 @dataclass(frozen=True, slots=True)
 @checked_fields
 class Constraint:
-    """The rigid kinematic condition w·θ = 0."""
+    """The rigid kinematic condition w·θ = 0.
+
+    >>> Constraint("first gear", {"input": 1.0, "output": -2.5}).weights["output"]
+    -2.5
+    """
 
     name: str
     weights: Weights

@@ -81,6 +81,8 @@ class System:
     """M q̈ + C q̇ + (K + iH + Ω²S) q + Σ w law(w·q) = u, θ = T q, kept as factors.
 
     Coordinates are scaled by mean speed ratios: a rigid rotation is the vector of ones.
+    ``T`` (nodes, coordinates); the matrices ``M`` [kgm²], ``C`` [Nms/rad], ``K`` and ``H`` [Nm/rad], ``S`` [kgm²] are
+    (coordinates, coordinates).  Made by `assemble`.
     """
 
     nodes: tuple[str, ...]

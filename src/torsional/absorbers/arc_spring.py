@@ -31,6 +31,11 @@ class ArcSprings(SpringFlywheel):
     outer spring beside which they lie at rest, with ``inner_friction`` (default: as on the guide), and press them
     outwards too.  What the channel is longer than the spring is play, half at each of the primary's tabs.
     Raises ModelError for what cannot be built or carries nothing.
+
+    >>> spring = CoilSpring(rate=89e3, free_length=0.19, solid_length=0.1, mass=0.49)
+    >>> flywheels = {"primary_inertia": 1.1, "secondary_inertia": 1.0, "stop_angle": 0.3}
+    >>> ArcSprings(channels=4, radius=0.15, channel_arc=1.3, spring=spring, segments=8, **flywheels).travel()
+    0.3
     """
 
     spring: CoilSpring

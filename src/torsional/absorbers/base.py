@@ -19,6 +19,10 @@ class Absorber:
     ``springs`` names the connections whose twist is the absorber's travel; ``nodes`` are the bodies that may carry
     more parts, a pendulum for one.  ``detail``: parts that stand beside these in the time domain, or in place of those
     of the same name, where the absorber has inner parts that linear and periodic analyses do without.
+
+    >>> from torsional.absorbers import single_mass_flywheel
+    >>> single_mass_flywheel(1.9).components["flywheel"].inertia
+    1.9
     """
 
     kind: str

@@ -17,8 +17,8 @@ def dual_mass_flywheel(primary_inertia: float, secondary_inertia: float, law: La
     One linear stage k alone gives ω0² = k (1/J1 + 1/J2).  Stages, lash and stop: `Hinges.staged`.
 
     >>> from torsional.laws import Hinges
-    >>> dual_mass_flywheel(1.2, 1.0, Hinges(13e3), damping=20).springs
-    ('dmf',)
+    >>> dual_mass_flywheel(1.2, 1.0, Hinges(13e3), damping=20).components["dmf"].law.stiffness
+    13000.0
     """
     components: dict[str, Component] = {
         "primary": Inertia(primary_inertia),

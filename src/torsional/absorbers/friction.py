@@ -13,6 +13,8 @@ from torsional.laws import Law
 def with_friction(absorber: Absorber, law: Law) -> Absorber:
     """Any absorber of one row of springs with a friction ``law`` beside them, named after them: ``dmf_friction``.
 
+    The law [Nm] is one of `torsional.laws`, `Jenkins` for a washer.
+
     Raises ModelError for an absorber without springs or with two rows.
 
     >>> from torsional.absorbers.dual_mass import dual_mass_flywheel

@@ -23,7 +23,12 @@ class Rollers:
     """Rollers of a bifilar pendulum: ``mass`` [kg] and spin ``inertia`` [kgm²] of all, ``radius`` [m], ``distance``
     [m] of their centres from the axis.  A roller's centre makes half the pendulum's way and turns by −s/(2r).
 
-    They move the tuned order off that of the path: see `CentrifugalPendulum.tuned_order`."""
+    They move the tuned order off that of the path: see `CentrifugalPendulum.tuned_order`.
+
+    >>> rollers = Rollers(mass=0.1, inertia=1e-5, radius=0.01, distance=0.09)
+    >>> round(CentrifugalPendulum("rotor", mass=1.0, distance=0.1, order=3.0, rollers=rollers).tuned_order, 6)
+    2.996029
+    """
 
     mass: float
     inertia: float

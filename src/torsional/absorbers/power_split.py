@@ -60,7 +60,8 @@ def cancellation_frequency(
 ) -> float:
     """Angular frequency [rad/s] at which the output stands still, without damping.
 
-    ω_c² = k / (J2 (1 − r) + J3 g (g − r)), for any linear driveline behind it and any J1, J4.
+    ω_c² = k / (J2 (1 − r) + J3 g (g − r)), for any linear driveline behind it and any J1, J4; from the gear conditions
+    of `power_split_absorber` (Wramner, Chalmers, 2020, §2.2.2).
 
     >>> round(cancellation_frequency(20e3, 0.5, 0.02, 2.5, 0.6) / 2 / math.pi, 7)
     41.4404174

@@ -11,7 +11,7 @@ from torsional.components import Inertia
 def single_mass_flywheel(inertia: float) -> Absorber:
     """A rigid flywheel of ``inertia`` [kgm²], clutch cover included.
 
-    >>> single_mass_flywheel(1.9).output
-    'flywheel'
+    >>> single_mass_flywheel(1.9).components["flywheel"].inertia
+    1.9
     """
     return Absorber("single mass flywheel", {"flywheel": Inertia(inertia)}, "flywheel", "flywheel", (), ("flywheel",))

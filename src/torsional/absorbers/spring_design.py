@@ -128,6 +128,15 @@ def spring_characteristic(design: SpringFlywheel) -> Hinges:
 
     φ(T) = p + s + 2T/k_t + Σ u(T) with the clearances p, s and the springs' compression u.  Where the first spring is
     solid, or the end stop is met, counts as the stop.
+
+    >>> from torsional.absorbers.spring_parts import CoilSpring
+    >>> from torsional.absorbers.straight_spring import StraightSprings
+    >>> row = {"springs_per_row": 6, "shoe_mass": 0.384, "end_shoe_mass": 0.3, "shoe_width": 0.01}
+    >>> row |= {"end_shoe_width": 0.01, "spring": CoilSpring(rate=1.05e6, free_length=0.03, solid_length=0.02)}
+    >>> flywheels = {"primary_inertia": 1.8, "secondary_inertia": 1.0, "stop_angle": 0.75}
+    >>> design = StraightSprings(channels=2, radius=0.1, channel_arc=2.516, **row, **flywheels)
+    >>> round(float(spring_characteristic(design).tangent(0.2)), 1)  # Nm/rad: two rows of k r²/6, and their tabs
+    3487.8
     """
     return both_ways(design.curve(False), design.curve(True), (-design.travel(True), design.travel()))
 
@@ -153,9 +162,18 @@ def detailed(design: SpringFlywheel) -> Absorber:
 
 @checked
 def condensed_flywheel(design: SpringFlywheel) -> Absorber:
-    """Two bodies with the frictionless characteristic between them, for linear and periodic analyses.
+    """Two bodies [kgm²] with the frictionless characteristic between them, for linear and periodic analyses.
 
     What slides in the channels turns with the primary.  Its ``detail`` holds the parts that replace it in time.
+
+    >>> from torsional.absorbers.spring_parts import CoilSpring
+    >>> from torsional.absorbers.straight_spring import StraightSprings
+    >>> row = {"springs_per_row": 6, "shoe_mass": 0.384, "end_shoe_mass": 0.3, "shoe_width": 0.01}
+    >>> row |= {"end_shoe_width": 0.01, "spring": CoilSpring(rate=1.05e6, free_length=0.03, solid_length=0.02)}
+    >>> flywheels = {"primary_inertia": 1.8, "secondary_inertia": 1.0, "stop_angle": 0.75}
+    >>> design = StraightSprings(channels=2, radius=0.1, channel_arc=2.516, **row, **flywheels)
+    >>> round(condensed_flywheel(design).components["primary"].inertia, 6)  # shoes included
+    1.8504
     """
     sliding = sum(sum(row.inertias) for row in design.rows)
     grease = sum(row.stretched(design.grease_damping) for row in design.rows)

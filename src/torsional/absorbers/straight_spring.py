@@ -30,6 +30,13 @@ class StraightSprings(SpringFlywheel):
     1), as tolerances make them differ.  Springs meet their shoes at the angle ψ of one pitch, so that a shoe is pressed
     outwards by sin(ψ/2) of both forces.
     Raises ModelError for what cannot be built or carries nothing.
+
+    >>> row = {"springs_per_row": 6, "shoe_mass": 0.384, "end_shoe_mass": 0.3, "shoe_width": 0.01}
+    >>> row |= {"end_shoe_width": 0.01, "spring": CoilSpring(rate=1.05e6, free_length=0.03, solid_length=0.02)}
+    >>> flywheels = {"primary_inertia": 1.8, "secondary_inertia": 1.0, "stop_angle": 0.75}
+    >>> design = StraightSprings(channels=2, radius=0.1, channel_arc=2.516, **row, **flywheels)
+    >>> round(design.travel(), 4)  # rad, until the springs are solid
+    0.6161
     """
 
     springs_per_row: int

@@ -38,7 +38,9 @@ def tuned_flange_flywheel(
     damping: float = 0.0,
     tva_damping: float = 0.0,
 ) -> Absorber:
-    """J1 –k1– Jm –k2– J2 with the absorber Ja on the intermediate flange m by ka; ``damping`` beside both springs.
+    """J1 –k1– Jm –k2– J2 with the absorber Ja on the intermediate flange m by ka [Nm/rad].
+
+    Inertias [kgm²]; ``damping`` [Nms/rad] beside both springs, ``tva_damping`` [Nms/rad] beside the absorber's.
 
     Notch at ω_t² = ka/Ja; with heavy flywheels and a light flange the added resonance lies below it, at about
     ω_t sqrt((k1 + k2)/(k1 + k2 + ka)) (Wramner, Chalmers, 2020, Paper D).
@@ -72,6 +74,8 @@ def tuned_secondary_flywheel(
     tva_damping: float = 0.0,
 ) -> Absorber:
     """The absorber on the secondary flywheel instead: its added resonance lies above, near ω_t sqrt(1 + Ja/J2).
+
+    Inertias [kgm²], ``tva_stiffness`` [Nm/rad], dampings [Nms/rad] (Wramner, Chalmers, 2020, Paper D).
 
     >>> from torsional.laws import Hinges
     >>> a = tuned_secondary_flywheel(1.2, 1.0, Hinges(13e3), tva_inertia=0.2, tva_stiffness=8e3)

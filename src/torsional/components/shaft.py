@@ -45,6 +45,8 @@ class Shaft:
 class Tyre(Shaft):
     """The torsional spring and damper between rim (``a``) and tread (``b``); a Shaft by another name.
 
+    ``stiffness`` [Nm/rad], ``damping`` [Nms/rad], ``loss_factor`` [-]; raises ModelError as a `Shaft` does.
+
     >>> Tyre(a="wheels", b="vehicle", stiffness=1.6e5, damping=1500).damping
     1500
     """

@@ -95,6 +95,9 @@ class CombustionCycle:
     The defaults are our own, with the peak pressures usual for a heavy truck diesel.
 
     Raises ModelError for events out of sequence or values beyond physics.
+
+    >>> round(float(CombustionCycle().main.burnt(0.5)), 3)  # of the main heat, 0.5 rad after firing
+    0.783
     """
 
     boost: float | LoadTable = LoadTable(BOOST)

@@ -36,6 +36,9 @@ class PressureTrace:
     cylinders that did not fire stay as they are.
 
     Raises ModelError for pressures that are not finite, absolute and below 1000 bar, or of another shape.
+
+    >>> PressureTrace(np.full((1, 1440), 2e5)).pressure.shape
+    (1, 1440)
     """
 
     pressure: FloatArray

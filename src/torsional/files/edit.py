@@ -24,6 +24,11 @@ def changed(model: Model, *edits: Edit) -> Model:
     An edit is a text such as ``absorber.stages.0.stiffness=10kNm/rad`` or a mapping {path: value}; a value of null
     (None) removes the key, so that its default holds.  ModelError, with the nearest key, for a path or a value that
     the model file could not have, and for a model whose parts were changed in Python since it was loaded.
+
+    >>> from torsional.files.load import load_model
+    >>> softer = changed(load_model("examples/truck_dmf.yaml"), "absorber.stiffness=10kNm/rad")
+    >>> softer.components["dmf"].law.stiffness  # Nm/rad
+    10000.0
     """
     if not model.document:
         remedy = "change values of the file first, or parts by Model.replaced, joined and without"

@@ -40,6 +40,9 @@ def load_model(path: str | os.PathLike[str]) -> Model:
     """The model that a YAML or JSON file describes, checked; files it names are read from its own folder.
 
     ModelError, and no other error, says what is wrong: file, key path with line, what was found, what is allowed.
+
+    >>> load_model("examples/truck_dmf.yaml").components["dmf"].law.stiffness  # Nm/rad
+    13000.0
     """
     tree = read_tree(path)
     return _model(_completed(tree, path))
@@ -48,7 +51,12 @@ def load_model(path: str | os.PathLike[str]) -> Model:
 def model_from_document(
     document: Mapping[str, Any], folder: str | os.PathLike[str] | None = None, file: str = ""
 ) -> Model:
-    """The model that a parsed model file describes; ``folder`` is where the files it names lie."""
+    """The model that a parsed model file describes; ``folder`` is where the files it names lie.
+
+    >>> discs = {"disc": {"type": "inertia", "inertia": "0.2 kgm²"}}
+    >>> model_from_document({"torsional": 1, "name": "one disc", "components": discs}).components["disc"].inertia
+    0.2
+    """
     tree = Tree(dict(document), {}, file)
     return _model(tree if folder is None else _completed(tree, Path(folder) / "model.yaml"))
 

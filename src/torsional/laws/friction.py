@@ -34,7 +34,7 @@ class Coulomb(Law):
 
     ``limit_torque`` F [Nm], reached to within 0.5 % at ten times the ``regularisation_rate`` u0 [rad/s]; below it the
     law is a viscous damper F/u0 and creeps where real friction sticks, so choose u0 well below the rates of
-    interest.  Raises ModelError unless F ≥ 0 and u0 > 0.
+    interest.  After C. A. Coulomb (1785), made smooth.  Raises ModelError unless F ≥ 0 and u0 > 0.
 
     >>> Coulomb(50.0, regularisation_rate=0.1).torque(0.0, [-10.0, 0.0, 0.1]).round(3).tolist()
     [-49.998, 0.0, 35.355]

@@ -26,6 +26,7 @@ class OperatingPoint:
 
     Arrays have the shape of the mean torques asked for, then one place a connection of ``names``; ``laws`` (None where
     linear) are those the state was found with.  The tangents are those at rest, where friction sticks.
+    It is what `equilibrium` gives; raises ModelError where one of several points is asked for and none is picked.
     """
 
     names: tuple[str, ...]
@@ -127,6 +128,15 @@ def linearize(system: System, point: OperatingPoint) -> System:
     """The same system with each law replaced by its tangents at one operating point; friction sticks.
 
     Raises ModelError for a point of several operating points (pick one with its ``at``).
+
+    >>> from torsional.components import Coupling, Inertia
+    >>> from torsional.laws import Polynomial
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> bent = Coupling("b", "a", Polynomial((100.0, 0.0, 1e4)))
+    >>> pair = assemble(Powertrain({"a": Inertia(1.0), "b": Inertia(2.0), "spring": bent}))
+    >>> round(linearize(pair, equilibrium(pair, {"a": 20.0}, hold="b")).K[0, 0])  # 100 + 3e4 φ² at φ = 0.1
+    400
     """
     if point.names != system.connections.names:
         raise ModelError("the operating point belongs to another system", found=", ".join(point.names[:8]))

@@ -41,6 +41,12 @@ def response_map(
     ``within_full_load`` (mean_torque, speed), false at speeds that the curve does not reach as well; ``status``
     (gear, mean_torque, speed, order), 0 where solved, NaN stands where not.
     ``progress(done, total)`` is called after each gear.  Raises ModelError for a model without an engine.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> found = response_map(truck, [1000 * torsional.RPM], [2000.0], gears=[12], orders=[3.0])
+    >>> abs(found.torque.sel(element="dmf")).values.ravel().round().tolist()  # Nm, 0-peak
+    [297.0]
     """
     engine = model.running_engine
     speeds = np.atleast_1d(model.speeds(57) if speed is None else np.asarray(speed, dtype=float))

@@ -68,6 +68,15 @@ def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
 
     ``frequency`` |λ|/2π [Hz], ``damping_ratio`` −Re λ/|λ| (1 where overdamped), ``eigenvalue`` λ [1/s] and complex
     ``shape`` (mode, node), largest angle one; rigid rotations first.
+
+    Raises ModelError for a nonlinear system.
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> disc = assemble(Powertrain({"disc": Inertia(1.0), "s": Shaft("ground", "disc", 100.0, damping=2.0)}))
+    >>> damped_modes(disc).damping_ratio.values.round(9)
+    array([0.1])
     """
     linear(system)
     told, system = system.hash, system.switched(speed)

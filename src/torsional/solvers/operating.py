@@ -39,6 +39,14 @@ def at_operating_point(model: Model, torque: float, gear: str | int | None = Non
     """The linear system about the mean engine ``torque`` [Nm] in one ``gear``, and that operating point.
 
     A model without any law needs no landmarks: its system is linear as it is.
+
+    Raises ModelError where the model does not say where torque enters (throws) and is taken up (load).
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> system, point = at_operating_point(truck, torque=2000.0, gear=12)
+    >>> round(float(point.angle[point.names.index("dmf")]), 6)  # rad: 2000 Nm over 13 kNm/rad
+    0.153846
     """
     system = assemble(model.powertrain(gear))
     if not system.elements and not (model.landmarks.throws and model.landmarks.load):

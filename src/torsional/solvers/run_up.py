@@ -34,6 +34,12 @@ def run_up_response(
     ``twist`` [rad] (speed, order, element), ``mean_twist`` (speed, element) [rad] and ``mean_torque`` (speed) [Nm].
     A grid of torques has these only roughly between its lines.  Raises ModelError for a model without an engine, and
     for speeds that the full-load curve does not reach.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> found = run_up_response(truck, [900 * torsional.RPM, 1200 * torsional.RPM], orders=[3.0])
+    >>> abs(found.torque.sel(element="dmf", order=3.0)).values.round().tolist()
+    [474.0, 234.0]
     """
     _ = model.running_engine
     speeds = np.atleast_1d(model.speeds(141) if speed is None else np.asarray(speed, dtype=float))
@@ -78,6 +84,13 @@ def full_load_response(
     """Run-ups of all ``gears`` together, at the model's landmarks: dimension ``gear`` in front.
 
     Nodes are the crankshaft and the node to be kept quiet, elements the absorber's springs and the clutch.
+
+    Orders [rad] and [Nm] as in `run_up_response`, which tells the errors too.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> full_load_response(truck, [1000 * torsional.RPM], gears=[11, 12], orders=[3.0]).angle.dims
+    ('gear', 'speed', 'order', 'node')
     """
     marks = model.landmarks
     nodes, elements = list(marks.observed_nodes), list(marks.observed_elements)

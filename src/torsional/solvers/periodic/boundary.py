@@ -50,6 +50,9 @@ def subharmonic_boundary(
     ``torque`` [Nm]; ``span`` its range in SI units, at ``places`` of which branches are followed to find the curves.
     Dimension ``boundary_point``: ``boundary_speed``, ``boundary_value``, ``boundary_kind`` (period doubling of the main
     branch, fold of a doubled one) and ``boundary_curve``.  Raises ModelError as `model_response` does.
+
+    g(x, p; r) = 0 beside R(x, p; r) = 0, g of the bordered singular matrix (Govaerts, Numerical Methods for
+    Bifurcations of Dynamical Equilibria, SIAM 2000, doi 10.1137/1.9780898719543).
     """
     if along != TORQUE and torque is None:
         raise ModelError("the mean torque is missing", where=TORQUE, remedy="give the one at which the value is varied")

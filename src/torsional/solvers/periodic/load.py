@@ -22,6 +22,10 @@ class Load:
     """Complex 0-peak torque harmonics [Nm] of ``orders`` at ``nodes``, order 0 the mean, over a parameter.
 
     Piece i holds between ``breaks`` i and i + 1: Σ_d ``coefficients`` (pieces, 4, nodes, orders) (p − break)^d.
+
+    >>> load = Load.through(["crank"], [0.0, 3.0], [60.0, 70.0], [[[1000.0, 400.0]], [[1000.0, 300.0]]])
+    >>> load.order(3.0)[0, :2].ravel().real.tolist()
+    [400.0, -10.0]
     """
 
     nodes: tuple[str, ...]

@@ -60,6 +60,18 @@ def certified(
     Contact times are those under the guard.  Raises ModelError for parts that are neither linear nor one-sided
     springs, for springs that soften, for a run without steps or one that does not go on under these drives, and
     where the steps lose the motion.
+
+    >>> from torsional.components import Coupling, Inertia
+    >>> from torsional.laws import Contacts
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.solvers.transient import MotionState, transient
+    >>> from torsional.system import assemble
+    >>> stop = Coupling("ground", "disc", Contacts((0.1,), (1.0,), (100.0,), (0.01,)))
+    >>> line = assemble(Powertrain({"disc": Inertia(1.0), "stop": stop}))
+    >>> run = transient(line, (), 0.05, MotionState.at_rest(line).moved(0.0, [1.0]), speed=0.0)
+    >>> found = certified(line, (), run, steps=1000, speed=0.0)  # into the stop
+    >>> found.closed, found.violation < 1e-4
+    (1, True)
     """
     if "end_step" not in run.attrs:
         remedy = "give it a run of `transient` by implicit steps"

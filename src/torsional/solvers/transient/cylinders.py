@@ -45,6 +45,12 @@ class CylinderTorques:
     −m x'(x'' θ̇² + x' θ̈) with the instantaneous speed, less the half-share m r²/2 that is in the throw's inertia;
     "half-share" −m x' x'' Ω² at the mean speed, as in the frequency domain; "none" leaves it out.
     Raises ModelError for anything else, and as `Engine.operated` does.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> drive = CylinderTorques(truck.engine, truck.landmarks.throws, 1000 * torsional.RPM, 2000.0)
+    >>> len(drive.nodes), drive.torque
+    (6, 2000.0)
     """
 
     engine: Engine

@@ -28,6 +28,9 @@ class OrderTorques:
     ``feedback``: the events move with the node's own motion; without it they keep to the mean rotation, which is what
     the frequency domain means.  Raises ModelError for speeds that the excitation does not reach; one with a single
     operating point holds at every speed.
+
+    >>> OrderTorques(Excitation.unit("crank", [1.5, 3.0], [100.0]), feedback=True).excitation.nodes
+    ('crank',)
     """
 
     excitation: Excitation

@@ -126,7 +126,14 @@ def windowed_rms(signal: xr.DataArray, window: float) -> xr.DataArray:
 @checked
 def crank_angle_of(run: xr.Dataset, node: str) -> xr.DataArray:
     """The angle [rad] that a node has turned by itself, over its mean speed ratio: the crank angle of a run-up by the
-    engine's own torque."""
+    engine's own torque.
+
+    >>> t = np.array([0.0, 0.5, 1.0])
+    >>> turned = xr.DataArray([[0.0], [1.0], [4.0]], coords={"time": t, "node": ["crank"]})
+    >>> turned = turned.assign_coords(speed_ratio=("node", [2.0]))
+    >>> crank_angle_of(xr.Dataset({"angle": turned, "crank_angle": ("time", 60.0 * t)}), "crank").values.tolist()
+    [0.0, 30.5, 62.0]
+    """
     ratio = float(run.speed_ratio.sel(node=node))
     found: xr.DataArray = run.crank_angle + run.angle.sel(node=node, drop=True) / ratio
     entry = QUANTITIES["crank_angle"]

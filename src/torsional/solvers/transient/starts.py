@@ -29,7 +29,14 @@ class MotionState:
     """A moment of a line: ``time`` [s], ``angle`` [rad] and ``speed`` [rad/s] of the coordinates as deviations,
     ``memory`` [rad] of the connections' laws (zero without), ``integral`` of the governors (empty: zero), ``reference``
     rotation that dampers count from [rad/s] (None: the reference node's), ``charge`` of the cylinders less one (None:
-    full).  A march leaves besides its own ``standing`` and ``step``, from which it goes on to the last bit."""
+    full).  A march leaves besides its own ``standing`` and ``step``, from which it goes on to the last bit.
+
+    >>> from torsional.components import Inertia
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> MotionState.at_rest(assemble(Powertrain({"disc": Inertia(1.0)}))).moved(0.1, [2.0]).speed.tolist()
+    [2.0]
+    """
 
     time: float
     angle: Array

@@ -63,6 +63,9 @@ def steady_state(
     steps made or lost of the energy is ``method_share``, and what else is to be said of them as in `transient`.
     Raises ModelError where nothing that drives the line repeats itself.
 
+    Exponent after Benettin and others (Meccanica 15 (1980) 9), dimension after Grassberger and Procaccia (Physica D 9
+    (1983) 189).
+
     >>> from torsional.components import Coupling, Inertia
     >>> from torsional.engine import Excitation
     >>> from torsional.laws import Hinges

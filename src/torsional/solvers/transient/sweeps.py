@@ -110,7 +110,14 @@ def engine_drive(
     base_order: float | None = None,
 ) -> Excitation:
     """The engine's orders at one ``speed`` [rad/s] and mean ``torque`` [Nm] on the throws of a ``model``, in multiples
-    of the order that its cylinders have in common, or of ``base_order``."""
+    of the order that its cylinders have in common, or of ``base_order``.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> drive = engine_drive(truck, 1000 * torsional.RPM, 2000.0, highest_order=6.0)
+    >>> drive.orders.tolist(), round(float(drive.torque[..., 0].real.sum()), 6)
+    ([0.0, 3.0, 6.0], 2000.0)
+    """
     engine = checked_engine(model)
     orders = common_orders(model, speed, torque, highest_order, base_order)
     return engine.excitation(model.landmarks.throws, speed, torque, orders)
