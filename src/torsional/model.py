@@ -31,12 +31,7 @@ NOTABLE = 0.05
 @dataclass(frozen=True)
 @checked_fields
 class Gear:
-    """One gear: its ``ratio`` [-], input over output speed, and the ``components`` in the line while it is engaged.
-
-    >>> from torsional.components import GearPair
-    >>> Gear(2.5, {"first": GearPair("input", "output", ratio=2.5)}).components["first"].ratio
-    2.5
-    """
+    """One gear: its ``ratio`` [-], input over output speed, and the ``components`` in the line while it is engaged."""
 
     ratio: float
     components: Mapping[str, Component]
@@ -46,11 +41,7 @@ class Gear:
 @checked_fields
 class Operation:
     """Where the machine runs: ``idle`` and ``speed`` (from, to) [rad/s]; ``torque`` (from, to) [Nm] or None for
-    zero to full load.
-
-    >>> round(Operation().speed[1] / RPM)  # rpm
-    2000
-    """
+    zero to full load."""
 
     idle: float = 600 * RPM
     speed: tuple[float, float] = (600 * RPM, 2000 * RPM)
