@@ -33,8 +33,11 @@ def test_columns_come_in_the_order_asked_for() -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("speed [rpm],torque [Nm]\n600,1\n", "a table has a header and at least two rows; found 1 rows"),
-        ("# nothing\n", "found 0 rows"),
+        (
+            "speed [rpm],torque [Nm]\n600,1\n",
+            "a table has a header and at least two rows; found 1 row below 'speed [rpm]",
+        ),
+        ("# nothing\n", "found no line"),
         ("speed [rpm] torque [Nm]\n600 1\n700 2\n", "header: the column is unknown; found 'speed [rpm] torque [Nm]'"),
         ("speed [rpm];torque [Nm]\n600;1,5\n700;2\n", "found '1,5'; write decimals with a point"),
         ("speed [rpm],torqe [Nm]\n1,1\n2,2\n", "found 'torqe [Nm]'; did you mean 'torque'?"),

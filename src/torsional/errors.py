@@ -45,11 +45,13 @@ class ModelError(TorsionalError, ValueError):
 def nearest(word: str, known: Iterable[str], listed: bool = True) -> str:
     """A remedy that names the known word nearest to a misspelt one, or lists them all where they are to be ``listed``.
 
+    A number is no misspelling of another one.
+
     >>> nearest("stifness", ["stiffness", "damping"])
     "did you mean 'stiffness'?"
     """
     words = [str(k) for k in known]
-    close = difflib.get_close_matches(word, words, n=1, cutoff=0.6)
+    close = [] if word.isdigit() else difflib.get_close_matches(word, words, n=1, cutoff=0.6)
     if close:
         return f"did you mean '{close[0]}'?"
     if not listed:

@@ -60,15 +60,21 @@ def cells(text: str) -> Cells:
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     held = [(number, line) for number, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"]
     if len(held) < 3:
-        raise ModelError("a table has a header and at least two rows", found=f"{max(len(held) - 1, 0)} rows")
+        raise ModelError("a table has a header and at least two rows", found=_counted(held))
     header = _HEADER_COMMENT.sub("", held[0][1])
-    separator = max(",;\t", key=header.count)
+    separator = max(",;	", key=header.count)
     try:
         kept = [header, *(line.partition("#")[0] for _, line in held[1:])]
         rows = list(csv.reader(kept, delimiter=separator))
     except csv.Error as error:
         raise ModelError("the table cannot be read", found=str(error)) from None
     return Cells([cell.strip() for cell in rows[0]], rows[1:], [number for number, _ in held[1:]])
+
+
+def _counted(held: Sequence[tuple[int, str]]) -> str:
+    """The rows there are, and the line that was taken for the header."""
+    rows = f"{len(held) - 1} row{'s' * (len(held) != 2)}"
+    return f"{rows} below {quoted(held[0][1].strip())}" if held else "no line"
 
 
 def numbers(table: Cells, names: Sequence[str]) -> NDArray[np.float64]:

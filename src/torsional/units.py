@@ -107,6 +107,8 @@ def _no_number(text: str) -> str:
         return "digits are not grouped by blanks; write 1500"
     if re.match(r"[+-]?0[xob]", text, re.IGNORECASE):
         return "numbers are decimal; hexadecimal, octal and binary ones are not read"
+    if re.match(r"[+-]?[0-9.]+\s*(-|\.\.)\s*[0-9]", text):
+        return "one number is wanted; a range, where one may stand, is written 600:2000"
     if re.match(r"[+-]?[0-9.]+[ ]*:", text):
         return "one number is wanted, not a clock time or a range"
     if re.match(r"[+-]?\.?(nan|inf)", text, re.IGNORECASE):
@@ -119,7 +121,7 @@ def _split(text: str, where: str) -> tuple[float, str]:
     tidy = text.translate(_TIDIED).strip()
     matched = _NUMBER.match(tidy) if len(tidy) <= _LONGEST else None
     rest = tidy[matched.end() :] if matched else ""
-    glued = re.match(r"[0-9_.,:]|x[0-9a-f]|o[0-7]|b[01]|\s+[0-9](?!/)", rest, re.IGNORECASE)
+    glued = re.match(r"[0-9_.,:]|x[0-9a-f]|o[0-7]|b[01]|\s+[0-9](?!/)|\s*-\s*[0-9]", rest, re.IGNORECASE)
     if matched is None or glued:
         raise ModelError(_no_number(tidy), where=where, found=quoted(text))
     return float(matched[0]), rest

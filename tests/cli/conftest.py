@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from tests.shipped import ROOT
 
+import torsional as package
 from torsional.cli import main
 
 
@@ -52,6 +53,7 @@ def process() -> Run:
 
     def run(*arguments: object, code: str = "", **environment: str) -> Told:
         own = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "NO_COLOR"))}
+        own["PYTHONPATH"] = str(Path(package.__file__).parents[1])  # the one tested, wherever another is installed
         line = [sys.executable, "-c", code or "import sys; from torsional.cli import main; sys.exit(main())"]
         done = subprocess.run(
             [*line, *map(str, arguments)], capture_output=True, env={**own, **environment}, timeout=600

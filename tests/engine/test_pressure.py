@@ -149,8 +149,8 @@ def lines(count: int = 720, **changed: str) -> str:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", "at least two rows; found 0 rows"),
-        ("\n\n# only this\n", "found 0 rows"),
+        ("", "at least two rows; found no line"),
+        ("\n\n# only this\n", "found no line"),
         (HEADER, "at least two rows"),
         ("0,1\n1,2\n2,3\n", "no unit that is known"),
         ("crank_angle,pressure\n" + lines(), "no unit that is known"),

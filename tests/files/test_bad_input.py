@@ -546,18 +546,26 @@ MACHINE = [
         "torsionl: 1",
         "torsionl (line 1): the key is unknown; did you mean 'torsional'?",
     ),
-    ("missing version", "torsional: 1\n", "", "the key 'torsional' is missing; allowed: version of this schema: 1"),
+    (
+        "missing version",
+        "torsional: 1\n",
+        "",
+        "the key 'torsional' is missing; allowed: version of this schema, as 'torsional: 1'",
+    ),
     (
         "newer version",
         "torsional: 1",
         "torsional: 2",
-        ("torsional (line 1): this version of the schema is unknown; found 2; allowed: 1; write 'torsional: 1'"),
+        (
+            "torsional (line 1): the file is written for a later torsional than this one; found 2; allowed: 1; "
+            "install the later one"
+        ),
     ),
     (
         "version as text",
         "torsional: 1",
         "torsional: '1'",
-        ("torsional (line 1): this version of the schema is unknown; found '1'; allowed: 1; write 'torsional: 1'"),
+        ("torsional (line 1): this version of the file format is unknown; found '1'; allowed: 1; write 'torsional: 1'"),
     ),
     ("missing name", "name: line\n", "", "the key 'name' is missing; allowed: what it is, in words"),
     ("name is a number", "name: line", "name: 13", "name (line 2): a text is wanted; found 13"),
@@ -844,7 +852,7 @@ CURVES: list[tuple[str, str | bytes | None, str]] = [
         HEAD,
         (
             "engine.full_load (line ?): in 'truck13_full_load.csv': a table has a header and at least two "
-            "rows; found 0 rows"
+            "rows; found 0 rows below 'speed [rpm],torque [Nm]'"
         ),
     ),
     (
@@ -852,7 +860,7 @@ CURVES: list[tuple[str, str | bytes | None, str]] = [
         HEAD + "600,1300\n",
         (
             "engine.full_load (line ?): in 'truck13_full_load.csv': a table has a header and at least two "
-            "rows; found 1 rows"
+            "rows; found 1 row below 'speed [rpm],torque [Nm]'"
         ),
     ),
     (

@@ -12,7 +12,7 @@ from tests.shipped import MODEL_FILES
 from torsional.components import Coupling, Inertia
 from torsional.errors import ModelError
 from torsional.files import expanded, load_model, model_from_document
-from torsional.laws import Law
+from torsional.laws import Law, plain
 from torsional.model import Landmarks, Model
 from torsional.system import assemble
 
@@ -49,8 +49,13 @@ def test_what_the_file_format_does_not_know_is_refused() -> None:
 
     with pytest.raises(ModelError, match="odd: the file format has no such component; found Odd"):
         expanded(Model("m", {"odd": Odd()}, Landmarks()))  # type: ignore[dict-item]
-    parts = {"a": Inertia(1.0), "b": Inertia(1.0), "c": Coupling("a", "b", Law())}
-    with pytest.raises(ModelError, match="c: the file format has no such law; found Law"):
+
+    class Own(Law):
+        kernel = plain
+        parameters = np.ones(1)  # type: ignore[assignment]
+
+    parts = {"a": Inertia(1.0), "b": Inertia(1.0), "c": Coupling("a", "b", Own())}
+    with pytest.raises(ModelError, match="c: the file format has no such law; found Own"):
         expanded(Model("m", parts, Landmarks()))
 
 

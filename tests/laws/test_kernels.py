@@ -265,3 +265,26 @@ def test_what_a_kernel_raises_is_passed_on() -> None:
 
     with pytest.raises(ZeroDivisionError):
         Failing(1.0).torque(np.full(3000, 0.5))
+
+
+def test_a_law_without_kernel_or_row_of_parameters_is_told_where_it_is_put_in() -> None:
+    class Bare(Law):
+        parameters = np.ones(1)  # type: ignore[assignment]
+
+    class Unsaid(Law):
+        kernel = plain
+
+    class Method(Law):
+        kernel = plain
+
+        def parameters(self) -> list[float]:  # type: ignore[override]
+            return [1.0]
+
+    class Single(Unsaid):
+        parameters = 5.0  # type: ignore[assignment]
+
+    told = {Bare: "Bare: a law's kernel is missing", Unsaid: "Unsaid: a law's parameters are missing"}
+    told |= {Method: r"Method.parameters: a row of numbers is wanted; found <bound method", Single: "found 5.0"}
+    for kind, sentence in told.items():
+        with pytest.raises(ModelError, match=sentence):
+            Coupling("a", "b", kind())

@@ -30,7 +30,7 @@ def run(
     gear: str,
     torque: str,
     speed: str,
-    order: Sequence[float] | None,
+    order: Sequence[str] | None,
     orders: str,
 ) -> None:
     """Answer the command."""

@@ -82,8 +82,8 @@ def told(failure: BaseException) -> int:
 
 
 def complain(message: str, kind: str = "error") -> None:
-    """One line on stderr."""
-    print(f"{kind}: {clean(message)}", file=sys.stderr)
+    """A sentence on stderr, or several below each other."""
+    print(f"{kind}: {chr(10).join(map(clean, message.split(chr(10))))}", file=sys.stderr)
 
 
 def clean(text: object) -> str:
@@ -147,8 +147,9 @@ def _usage(failure: Any) -> int:
         return int(failure.exit_code)
     context = getattr(failure, "ctx", None)
     path = context.command_path if context is not None else "torsional"
-    message = " ".join(failure.format_message().split())
-    complain(f"{message.rstrip('.')} (see '{path} --help')")
+    message = " ".join(failure.format_message().split()).rstrip(".")
+    wanted = getattr(getattr(failure, "param", None), "help", None) or "" if message.startswith("Missing") else ""
+    complain(f"{message}{': ' if wanted else ''}{wanted.rstrip('.')} (see '{path} --help')")
     return MENDABLE
 
 

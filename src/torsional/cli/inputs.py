@@ -114,7 +114,7 @@ def warn_overload(model: Model, torque: float, over: Sequence[float] | Array = (
         complain(f"{where}: {units.show(torque, 'torque')} {told}{at}", kind="warning")
 
 
-def orders(single: Sequence[float] | None, text: str) -> Array | None:
+def orders(single: Sequence[str] | None, text: str) -> Array | None:
     """The engine orders asked for, ascending; None for the usual ones."""
     found = [_value(value, "engine_order", "--order") for value in single or ()]
     if text:
@@ -122,6 +122,13 @@ def orders(single: Sequence[float] | None, text: str) -> Array | None:
     if found and min(found) <= 0:
         raise ModelError("an engine order is positive", where="--order", found=f"{min(found):g}")
     return np.unique(np.array(found)) if found else None
+
+
+def whole(text: str, option: str, least: int, usual: int) -> int:
+    """A number of things, at least so many; ``usual`` where none is asked for."""
+    if text and not (text.isascii() and text.isdigit() and int(text[:9]) >= least):
+        raise ModelError("a whole number is wanted", where=option, found=units.quoted(text), allowed=f">= {least}")
+    return int(text[:9]) if text else usual
 
 
 def checked_values(values: Sequence[float], quantity: str, option: str, text: str) -> None:

@@ -30,14 +30,14 @@ def run(
     gear: str,
     torque: str,
     speed: str,
-    order: Sequence[float] | None,
+    order: Sequence[str] | None,
     orders: str,
     node: Sequence[str] | None,
     element: Sequence[str] | None,
-    worst: int,
+    worst: str,
 ) -> None:
     """Answer the command."""
-    machine = request.model
+    machine, listed = request.model, inputs.whole(worst, "--worst", 1, usual=3)
     gears, asked = inputs.gears(machine, gear), inputs.orders(order, orders)
     speeds, torques = inputs.speeds(machine, speed, SPEEDS), inputs.torques(machine, torque, TORQUES)
     nodes, elements = chosen_places(machine, gears[-1], node, element)
@@ -50,7 +50,7 @@ def run(
         data, full = reduced(found, machine), without_empty(found)
     _warn_unsolved(full)
     settings = {"gears": gears, "orders": full.order.values}
-    tables = [_summary(full, machine), *_tables(data, worst)]
+    tables = [_summary(full, machine), *_tables(data, listed)]
     answer = Answer(
         "map", tables, told_settings(request, **settings), data, full.assign(data.data_vars), lambda: _picture(data)
     )

@@ -31,14 +31,14 @@ def run(
     gear: str,
     torque: str,
     speed: str,
-    order: float | None,
+    order: str,
 ) -> None:
     """Answer the command."""
     machine = request.model
     names = inputs.gears(machine, gear)
     at = inputs.speed(machine, speed)
     mean = inputs.torque(machine, torque, [at] if speed else [])
-    asked = inputs.orders(None if order is None else [order], "")
+    asked = inputs.orders([order] if order else None, "")
     main = float(asked[0]) if asked is not None else next(iter(machine.engine_orders()), None)
     found = [modes_of(machine, name, mean, at, main) for name in names]
     settings = {"gears": names, "torque": amount(mean, "torque"), "speed": amount(at, "speed"), "order": main}

@@ -13,7 +13,12 @@ def _taking(*names: str, metavar: str, help: str) -> Any:
     return typer.Option(*names, metavar=metavar, help=help, show_default=False)
 
 
-ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", help="Model file (.yaml or .json).", show_default=False)]
+ModelFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="MODEL", help="Model file (.yaml or .json); 'torsional new' writes one.", show_default=False
+    ),
+]
 Gear = Annotated[str, _taking("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.")]
 Gears = Annotated[
     str,
@@ -150,20 +155,14 @@ Isolated = Annotated[
     bool, typer.Option("--isolated", help="Seek as well motions that hang together with no other; takes longer.")
 ]
 Points = Annotated[
-    int | None,
-    typer.Option(
-        "--points",
-        min=2,
-        metavar="N",
-        help="Speeds, and mean torques, of ranges without a step; default: 71 and 26.",
-        show_default=False,
-    ),
+    str,
+    _taking("--points", metavar="N", help="Speeds, and mean torques, of ranges without a step; default: 71 and 26."),
 ]
 
-Order = Annotated[list[float] | None, _taking("--order", "-n", metavar="N", help="An engine order; may be repeated.")]
+Order = Annotated[list[str] | None, _taking("--order", "-n", metavar="N", help="An engine order; may be repeated.")]
 Orders = Annotated[str, _taking("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.")]
 OneOrder = Annotated[
-    float | None,
+    str,
     _taking("--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest."),
 ]
 Nodes = Annotated[
@@ -180,7 +179,7 @@ OneElement = Annotated[
     str,
     _taking("--element", metavar="NAME", help="The connection whose torque is told; default: the first with stages."),
 ]
-Worst = Annotated[int, typer.Option("--worst", min=1, metavar="N", help="Cells to list for each place.")]
+Worst = Annotated[str, _taking("--worst", metavar="N", help="Cells to list for each place; default: 3.")]
 Expand = Annotated[bool, typer.Option("--expand", help="Print the model written as components alone.")]
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]

@@ -78,7 +78,8 @@ def _refuse_place(path: Path) -> None:
         raise ModelError("this is a folder", where="--output", found=repr(str(path)), remedy="name a file in it")
     folder = path.resolve().parent
     if not folder.is_dir():
-        raise ModelError("there is no such folder", where="--output", found=repr(str(path.parent)))
+        remedy = "make the folder first, or name one that is there"
+        raise ModelError("there is no such folder", where="--output", found=repr(str(path.parent)), remedy=remedy)
     if not os.access(folder, os.W_OK):
         raise ModelError("nothing may be written in this folder", where="--output", found=repr(str(path.parent)))
 

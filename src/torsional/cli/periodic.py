@@ -70,7 +70,7 @@ def run(
     parameter: str,
     at: str,
     isolated: bool,
-    order: Sequence[float] | None,
+    order: Sequence[str] | None,
     node: Sequence[str] | None,
     element: Sequence[str] | None,
 ) -> None:

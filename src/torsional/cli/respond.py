@@ -37,7 +37,7 @@ def run(
     gear: str,
     torque: str,
     speed: str,
-    order: Sequence[float] | None,
+    order: Sequence[str] | None,
     orders: str,
     node: Sequence[str] | None,
     element: Sequence[str] | None,

@@ -34,15 +34,16 @@ def run(
     gear: str,
     torque: str,
     speed: str,
-    points: int | None,
+    points: str,
     node: str,
     element: str,
 ) -> None:
     """Answer the command."""
     machine = request.model
     engaged = inputs.one_gear(machine, gear)
-    speeds = _several(inputs.speeds(machine, speed, points or SPEEDS), "--speed")
-    torques = _several(inputs.torques(machine, torque, points or TORQUES), "--torque")
+    many, few = (inputs.whole(points, "--points", 2, usual=usual) for usual in (SPEEDS, TORQUES))
+    speeds = _several(inputs.speeds(machine, speed, many), "--speed")
+    torques = _several(inputs.torques(machine, torque, few), "--torque")
     laws_of(machine, engaged)
     if node or element:
         chosen_places(machine, engaged, [node] if node else None, [element] if element else None)

@@ -36,6 +36,7 @@ class Coupling:
     def __post_init__(self) -> None:
         checks.distinct(self.a, self.b)
         checks.not_negative(self.damping, "damping", "damping")
+        self.law.refuse_unfinished()
         for _ in self.stamps("load"):  # a load that the law cannot take is refused now
             pass
 

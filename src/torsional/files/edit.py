@@ -84,6 +84,7 @@ def put(document: dict[str, Any], path: str, value: Any) -> None:
     holder: Any = document
     for number, step in enumerate(steps):
         if isinstance(holder, dict) and step not in holder:
+            _refuse_item(steps[: number + 1], [*steps, last][number + 1])
             holder[step] = {}
         holder = holder[_key(holder, step, ".".join(steps[:number]))]
         if not isinstance(holder, dict | list):
@@ -94,6 +95,14 @@ def put(document: dict[str, Any], path: str, value: Any) -> None:
         holder[key] = copy.deepcopy(value)
     elif isinstance(holder, list) or key in holder:
         del holder[key]
+
+
+def _refuse_item(steps: list[str], item: str) -> None:
+    """ModelError for an item of a list that is not there: what the others hold nobody has said."""
+    if item.isdigit():
+        where = ".".join(steps)
+        remedy = f"write the whole list first, as {where}=[...], or name a value that is there"
+        raise ModelError("the model has no such list", where=where, found=f"item {quoted(item)}", remedy=remedy)
 
 
 def _key(holder: Any, step: str, path: str) -> Any:

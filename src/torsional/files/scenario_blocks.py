@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from torsional import units
 from torsional.errors import ModelError
-from torsional.files.schema.fields import Block, Inertia, Quantity, Speed, Stiffness, Torque
+from torsional.files.schema.fields import Block, Inertia, Quantity, Speed, Stiffness, Torque, only_version
 from torsional.units import RPM
 
 VERSION = 1
@@ -23,10 +23,7 @@ Share = Annotated[float, Quantity("ratio", least=0)]
 
 
 def _version(value: object) -> object:
-    if isinstance(value, bool) or value != VERSION:
-        problem, remedy = "this version of scenario files is unknown", f"write 'torsional_scenario: {VERSION}'"
-        raise ModelError(problem, found=units.quoted(value), allowed=str(VERSION), remedy=remedy)
-    return VERSION
+    return only_version(value, VERSION, "torsional_scenario")
 
 
 def _gear(value: object) -> object:

@@ -17,10 +17,12 @@ from torsional.laws.inversion import inverted
 from torsional.laws.rows import HingeRows
 from torsional.numerics.arrays import Array, IntArray
 from torsional.numerics.callbacks import RETURNED, address_of, law_at
+from torsional.units import quoted
 
 Told = tuple[float, float, float, float, float, float, float, float]
 """Torque and its derivatives by angle, rate and memory; the new memory and its derivatives by the same."""
 
+_WANTED = "write a property `parameters` that returns the values in the order in which the kernel reads them"
 _FEW = 2000
 """Evaluations up to which plain Python is quicker than getting hold of compiled code."""
 
@@ -96,7 +98,7 @@ class Law:
     @property
     def parameters(self) -> Array:
         """The law's values as one flat array, in the order its kernel reads them."""
-        raise TypeError(f"{type(self).__name__} must define its parameters")
+        raise ModelError("a law's parameters are missing", where=type(self).__name__, remedy=_WANTED)
 
     @property
     def unguarded_stiffness(self) -> float:
@@ -110,8 +112,16 @@ class Law:
 
     @property
     def packed(self) -> Array:
-        """The parameters as kernels read them, whatever sequence of numbers a law gives."""
-        return np.ascontiguousarray(self.parameters, dtype=float)
+        """The parameters as kernels read them, whatever sequence of numbers a law gives; ModelError for none such."""
+        values: object = self.parameters
+        try:
+            row = np.asarray(values, dtype=float)
+        except (TypeError, ValueError):
+            row = np.zeros(())
+        if row.ndim != 1:
+            name = f"{type(self).__name__}.parameters"
+            raise ModelError("a row of numbers is wanted", where=name, found=quoted(values), remedy=_WANTED)
+        return np.ascontiguousarray(row)
 
     @property
     def address(self) -> int:
@@ -202,11 +212,19 @@ class Law:
         law: Any = self
         return cast("Self", dataclasses.replace(law, normal_load=float(load)))
 
+    def refuse_unfinished(self) -> None:
+        """ModelError for a law of one's own without a kernel or a row of parameters, before an analysis meets it."""
+        _ = self._own_kernel(), self.packed
+
+    def _own_kernel(self) -> Callable[..., Told]:
+        if not hasattr(type(self), "kernel"):
+            remedy = "write kernel = f, where f is a function under numba.njit that returns torsional.laws.plain(...)"
+            raise ModelError("a law's kernel is missing", where=type(self).__name__, remedy=remedy)
+        return type(self).kernel
+
     def _run(self, interpreted: Any, compiled: Any, size: int, *arguments: Any) -> Array:
         """One of two functions of the same body: for a few evaluations in Python, else by the kernel's address."""
-        kernel = getattr(type(self), "kernel", None)
-        if kernel is None:
-            raise TypeError(f"{type(self).__name__} must define its kernel")
+        kernel = self._own_kernel()
         if size >= _FEW and hasattr(kernel, "py_func"):
             return np.asarray(compiled(self.address, self.packed, *arguments))
         try:

@@ -8,11 +8,9 @@ from pydantic import BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from torsional import units
-from torsional.errors import ModelError
 from torsional.files.schema.absorbers import AnyAbsorber
 from torsional.files.schema.engine import EngineBlock
-from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Speed
+from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Speed, only_version
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox, VehicleBlock
 from torsional.files.schema.making import Making
 from torsional.files.schema.parts import Part
@@ -26,10 +24,7 @@ Parts = Annotated[dict[Name, Part], Field(max_length=400)]
 
 
 def _version(value: object) -> object:
-    if isinstance(value, bool) or value != VERSION:
-        problem = "this version of the schema is unknown"
-        raise ModelError(problem, found=units.quoted(value), allowed=str(VERSION), remedy="write 'torsional: 1'")
-    return VERSION
+    return only_version(value, VERSION, "torsional")
 
 
 def _names(value: object) -> object:
@@ -83,7 +78,9 @@ class GearBlock(Block):
 class ModelFile(Block):
     """A model file: a vehicle by its blocks, any machine by its components, or both."""
 
-    torsional: Annotated[Literal[1], BeforeValidator(_version)] = Field(description="version of this schema: 1")
+    torsional: Annotated[Literal[1], BeforeValidator(_version)] = Field(
+        description="version of this schema, as 'torsional: 1'"
+    )
     name: Annotated[str, Field(min_length=1, max_length=_TITLE)] = Field(description="what it is, in words")
     description: Annotated[str, Field(max_length=4000)] = ""
     engine: EngineBlock | None = None

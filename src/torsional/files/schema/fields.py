@@ -144,6 +144,16 @@ Name = Annotated[str, AfterValidator(plain_name)]
 Node = Annotated[str, AfterValidator(_node)]
 
 
+def only_version(value: object, version: int, key: str) -> int:
+    """The one version that is read; ModelError for any other, which says of a later one that it is."""
+    if isinstance(value, bool) or value != version:
+        problem, remedy = "this version of the file format is unknown", f"write '{key}: {version}'"
+        if isinstance(value, int | float) and value >= version + 1:
+            problem, remedy = "the file is written for a later torsional than this one", "install the later one"
+        raise ModelError(problem, found=units.quoted(value), allowed=str(version), remedy=remedy)
+    return version
+
+
 class Block(BaseModel):
     """A block of keys: every key known, every value of its type, none changed afterwards."""
 

@@ -1,0 +1,1 @@
+"""What each command takes; told module by module, each small enough to take one more."""
