@@ -25,7 +25,7 @@ def main() -> dict[str, float]:
     # the same speed and mean torque: a knock of 20 ms takes the line from the small motion to the large one
     drives = [engine(880 * tv.RPM), knock]
     run = tv.transient(system, drives, 8.0, start, hold=truck.landmarks.load, step=5e-5, output=1e-3)
-    orders = tv.orders_in_time(run.twist.sel(element="dmf"), run.crank_angle, [1.5])
+    orders = tv.order_tracking(run.twist.sel(element="dmf"), run.crank_angle, [1.5])
     before, after = float(abs(orders[0, 0])), float(abs(orders[-1, 0]))
     print(f"at 880 rpm {before:.4f} rad before the knock and {after:.4f} rad after it")
     return {"up": float(up[5]), "down": float(down[5]), "before": before, "after": after}

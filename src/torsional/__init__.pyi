@@ -122,7 +122,7 @@ from .solvers.transient import (
     certified as certified,
     crank_angle_of as crank_angle_of,
     engine_drive as engine_drive,
-    orders_in_time as orders_in_time,
+    order_tracking as order_tracking,
     stage_changes as stage_changes,
     steady_map as steady_map,
     steady_state as steady_state,

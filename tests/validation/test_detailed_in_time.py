@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from torsional.engine import Excitation
 from torsional.files import load_model
 from torsional.laws import LuGre, hinge_rows
-from torsional.solvers.transient import MotionState, engine_drive, orders_in_time, transient
+from torsional.solvers.transient import MotionState, engine_drive, order_tracking, transient
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import starting
 from torsional.system import System, assemble
@@ -145,7 +145,7 @@ def test_long_runs_agree_in_their_orders(torque: float, bar: float) -> None:
     """1.5 s by steps of 0.1 ms and 10 µs: where shoes rattle no trajectory stays, orders of the whole flywheel do."""
     runs = [stepped(torque, 1.5, step, output=1e-4) for step in (1e-4, 1e-5)]
     for element, name in (("dmf", "twist"), ("clutch", "torque")):
-        found = [orders_in_time(run[name].sel(element=element), run.crank_angle, [0.0, 3.0]) for run in runs]
+        found = [order_tracking(run[name].sel(element=element), run.crank_angle, [0.0, 3.0]) for run in runs]
         coarse, fine = (np.abs(each.values[-6:]).mean(axis=0) for each in found)
         np.testing.assert_allclose(coarse, fine, rtol=bar)
     assert all(abs(run.attrs["method_share"]) < 1e-3 for run in runs)

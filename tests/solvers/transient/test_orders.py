@@ -9,7 +9,7 @@ import xarray as xr
 from torsional.errors import ModelError
 from torsional.numerics.stepping.stroboscopic import repeats
 from torsional.solvers.transient.character import dimension, named
-from torsional.solvers.transient.orders import orders_in_time, windowed_rms
+from torsional.solvers.transient.orders import order_tracking, windowed_rms
 from torsional.solvers.transient.speed_profile import SpeedProfile
 
 
@@ -24,7 +24,7 @@ def run_up(fast: float = 40.0) -> tuple[xr.DataArray, xr.DataArray]:
 
 def test_orders_of_a_run_up_do_not_smear() -> None:
     signal, alpha = run_up()
-    found = orders_in_time(signal, alpha, [1.5, 3.0, 6.0])
+    found = order_tracking(signal, alpha, [1.5, 3.0, 6.0])
     expected = (2.0 - 0.5 * found.time) * np.exp(0.4j)
     np.testing.assert_allclose(found.sel(order=1.5).values, expected.values, rtol=0.02)
     np.testing.assert_allclose(found.sel(order=3.0).values, -0.7j, atol=0.03)
@@ -35,7 +35,7 @@ def test_the_same_over_time_would_smear() -> None:
     signal, alpha = run_up()
     mean = float(alpha.diff("time").mean()) * 1.0
     even = xr.DataArray(np.arange(alpha.size) * mean, dims="time", coords=alpha.coords)
-    found = orders_in_time(signal, even, [1.5, 3.0])
+    found = order_tracking(signal, even, [1.5, 3.0])
     assert float(abs(found.sel(order=3.0)).min()) < 0.35
 
 
@@ -43,7 +43,7 @@ def test_a_window_of_hann_keeps_phase_and_amplitude() -> None:
     t = np.arange(0.0, 2.0, 5e-4)
     alpha = xr.DataArray(80.0 * t, dims="time", coords={"time": t})
     signal = (1.0 + 0.5 * np.cos(3 * alpha + 1.0)).expand_dims(node=["a"])
-    found = orders_in_time(signal, alpha, [0.0, 3.0], cycles=2, window="hann", overlap=0.5)
+    found = order_tracking(signal, alpha, [0.0, 3.0], cycles=2, window="hann", overlap=0.5)
     assert found.dims == ("time", "node", "order")
     np.testing.assert_allclose(found.sel(order=3.0).values, 0.5 * np.exp(1j), atol=1e-6)
     np.testing.assert_allclose(found.sel(order=0.0).values, 1.0, atol=1e-6)
@@ -59,7 +59,7 @@ def test_a_window_of_hann_keeps_phase_and_amplitude() -> None:
 )
 def test_windows_that_cannot_be_are_refused(orders: list[float], settings: dict[str, object], told: str) -> None:
     with pytest.raises(ModelError, match=told):
-        orders_in_time(*run_up(), orders, **settings)  # type: ignore[arg-type]
+        order_tracking(*run_up(), orders, **settings)  # type: ignore[arg-type]
 
 
 def test_root_mean_square_is_about_the_mean() -> None:
@@ -122,6 +122,6 @@ def test_a_crank_that_does_not_turn_is_refused_with_where_its_angle_is() -> None
     """In a scenario that starts from rest the frame stands, and all of the rotation is the crank's own."""
     signal, alpha = run_up()
     with pytest.raises(ModelError, match=r"the crank does not turn; .*crank_angle_of\(run, node\)"):
-        orders_in_time(signal, 0.0 * alpha, [3.0])
+        order_tracking(signal, 0.0 * alpha, [3.0])
     with pytest.raises(ModelError, match="stands or turns back"):
-        orders_in_time(signal, -alpha, [3.0])
+        order_tracking(signal, -alpha, [3.0])

@@ -4,7 +4,7 @@ from torsional.solvers.transient.certificate import Certificate, certified
 from torsional.solvers.transient.cylinders import CylinderTorques
 from torsional.solvers.transient.drives import Governor, OrderTorques, TorqueHistory
 from torsional.solvers.transient.events import stage_changes
-from torsional.solvers.transient.orders import crank_angle_of, orders_in_time, windowed_rms
+from torsional.solvers.transient.orders import crank_angle_of, order_tracking, windowed_rms
 from torsional.solvers.transient.run import transient
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.solvers.transient.starts import MotionState
@@ -22,7 +22,7 @@ __all__ = [
     "certified",
     "crank_angle_of",
     "engine_drive",
-    "orders_in_time",
+    "order_tracking",
     "stage_changes",
     "steady_map",
     "steady_state",

@@ -18,7 +18,7 @@ WINDOWS = ("none", "hann")
 
 
 @checked
-def orders_in_time(
+def order_tracking(
     signal: xr.DataArray,
     crank_angle: xr.DataArray,
     orders: ArrayLike,
@@ -40,7 +40,7 @@ def orders_in_time(
 
     >>> t = np.linspace(0.0, 1.0, 4001)
     >>> alpha = xr.DataArray(60.0 * t + 20.0 * t**2, dims="time", coords={"time": t})
-    >>> found = orders_in_time(0.3 * np.cos(3 * alpha), alpha, [1.5, 3.0])
+    >>> found = order_tracking(0.3 * np.cos(3 * alpha), alpha, [1.5, 3.0])
     >>> abs(found).isel(time=2).values.round(6).tolist()
     [0.0, 0.3]
     """
