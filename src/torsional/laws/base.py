@@ -75,12 +75,6 @@ class Law:
 
     ``remembers``: the torque depends on the past as well, through one number, the elastic deflection [rad] of the
     element that sticks or slides; zero is relaxed.  ``carries_mean_torque``: it holds a torque at rest.
-
-    A kernel gives torque [Nm], its slopes and the new memory as one tuple, see `plain`.
-
-    >>> from torsional.laws import Hinges
-    >>> float(Hinges(13e3).torque(0.1)), float(Hinges(13e3).tangent(0.1))
-    (1300.0, 13000.0)
     """
 
     kernel: ClassVar[Callable[..., Told]]
