@@ -113,23 +113,16 @@ def add_row(rows: Rows, i: int, factor: float, out: Array) -> None:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def elastic_torques(
-    c: Connected,
-    motion: tuple[Array, Array],
-    turning: tuple[float, float, float],
-    angle: Array,
-    rate: Array,
-    torque: Array,
-) -> None:
-    """Angles, rates and torques [Nm] of springs, dampers and hinges, with or without contact times, (E,) each.
+def _elastic_torques(c: Connected, q: Array, v: Array, turning: tuple[float, float, float], told: Array) -> None:
+    """Angles, rates and torques [Nm] of springs, dampers and hinges, with or without contact times, into rows of told.
 
-    ``motion`` q, q̇; ``turning``: the frame's speed, what the reference rotation is ahead of it, Ω.
+    ``turning``: the frame's speed, what the reference rotation is ahead of it, Ω.
     """
     frame, ahead, omega = turning
-    constants, hinges = c.constants, c.hinges
+    constants, hinges, angle, rate, torque = c.constants, c.hinges, told[0], told[1], told[2]
     for e in range(torque.size):
-        angle[e] = row_product(c.rows, e, motion[0])
-        rate[e] = row_product(c.rows, e, motion[1]) - constants[FOLLOW, e] * ahead + constants[MEAN_RATE, e] * frame
+        angle[e] = row_product(c.rows, e, q)
+        rate[e] = row_product(c.rows, e, v) - constants[FOLLOW, e] * ahead + constants[MEAN_RATE, e] * frame
         stiffness = constants[SPRING, e] + constants[CENTRIFUGAL, e] * omega * omega
         torque[e] = stiffness * angle[e] + constants[DAMPER, e] * rate[e]
     for h in range(hinges.of.size):
@@ -140,28 +133,50 @@ def elastic_torques(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _connection_torques(
-    c: Connected, at: Places, t: float, y: Array, frame_speed: float, torque: Array, out: Array
+def connection_torques(
+    c: Connected,
+    outside: Outside,
+    moment: tuple[float, float, float],
+    q: Array,
+    v: Array,
+    memory: Array,
+    values: Array,
+    told: Array,
 ) -> None:
-    """Take the torques of all connections from ``torque`` (N,), and put the rates of memories into ``out``."""
-    n, outside, places = torque.size, at.outside, c.laws.places
-    q, v = y[:n], y[n : 2 * n]
-    omega = row_product(outside.rows, outside.reference, v) + frame_speed
-    ahead = y[2 * n] - frame_speed if math.isfinite(outside.reference_time) else 0.0
-    angle, rate, elastic = np.empty((3, c.constants.shape[1]))
-    elastic_torques(c, (q, v), (frame_speed, ahead, omega), angle, rate, elastic)
-    total, values = elastic.copy(), c.laws.values.copy()
+    """Angles, rates, torques [Nm] and normal loads of all connections, (4, E), with the loads in the laws' ``values``.
+
+    ``moment``: time, the frame's speed, Ω_r; ``memory`` (E,).  A load that does not vary is zero.
+    """
+    t, frame, turning = moment
+    places, angle, rate, torque, load = c.laws.places, told[0], told[1], told[2], told[3]
+    omega = row_product(outside.rows, outside.reference, v) + frame
+    ahead = turning - frame if math.isfinite(outside.reference_time) else 0.0
+    _elastic_torques(c, q, v, (frame, ahead, omega), told)
+    load[:] = 0.0
+    for l in range(places.shape[1]):  # all before a law adds its torque to those of springs
+        level_start, knots = outside.level_start, outside.knots
+        load[places[LAW_OF, l]] = press(c.laws, level_start, knots, l, t, omega * omega, torque, values)
     for l in range(places.shape[1]):
-        e, law, bent = places[LAW_OF, l], law_at(places[ADDRESS, l]), 0.0
-        press(c.laws, outside.level_start, outside.knots, l, t, omega * omega, elastic, values)
-        own = values[places[START, l] : places[STOP, l]]
+        e, law, own = places[LAW_OF, l], law_at(places[ADDRESS, l]), values[places[START, l] : places[STOP, l]]
+        torque[e] += law(own, angle[e], rate[e], memory[e], 0.0)[0]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _connect(c: Connected, at: Places, t: float, y: Array, frame: float, torque: Array, out: Array) -> None:
+    """Take the torques of all connections from ``torque`` (N,), and put the rates of memories into ``out``."""
+    n, places, count = torque.size, c.laws.places, c.constants.shape[1]
+    told, memory, values = np.empty((4, count)), np.zeros(count), c.laws.values.copy()
+    for e in range(count):
+        if at.memory[e] >= 0:
+            memory[e] = y[at.memories + at.memory[e]]
+    connection_torques(c, at.outside, (t, frame, y[2 * n]), y[:n], y[n : 2 * n], memory, values, told)
+    for l in range(places.shape[1]):
         if places[REMEMBERS, l]:
-            place, flowing = at.memories + at.memory[e], law_at(at.flow[e])
-            bent = y[place]
-            out[place] = flowing(own, angle[e], rate[e], bent, 0.0)[0]
-        total[e] += law(own, angle[e], rate[e], bent, 0.0)[0]
-    for e in range(total.size):
-        add_row(c.rows, e, -total[e], torque)
+            e, own = places[LAW_OF, l], values[places[START, l] : places[STOP, l]]
+            flowing = law_at(at.flow[e])
+            out[at.memories + at.memory[e]] = flowing(own, told[0, e], told[1, e], memory[e], 0.0)[0]
+    for e in range(count):
+        add_row(c.rows, e, -told[2, e], torque)
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -210,7 +225,7 @@ def fill_rates(connected: Connected, at: Places, t: float, y: Array, out: Array)
     """ẏ into ``out``."""
     outside, n = at.outside, at.mass.shape[0]
     torque, frame = np.zeros(n), frame_at(outside.knots, outside.frame, t)
-    _connection_torques(connected, at, t, y, frame[0], torque, out)
+    _connect(connected, at, t, y, frame[0], torque, out)
     _drive(at, t, y, frame, torque, out)
     out[:n] = y[n : 2 * n]
     _accelerate(at, y, frame, torque, out[n : 2 * n])
