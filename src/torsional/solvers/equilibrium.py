@@ -27,6 +27,13 @@ class OperatingPoint:
     Arrays have the shape of the mean torques asked for, then one place a connection of ``names``; ``laws`` (None where
     linear) are those the state was found with.  The tangents are those at rest, where friction sticks.
     It is what `equilibrium` gives; raises ModelError where one of several points is asked for and none is picked.
+
+    >>> from torsional.components import Inertia, Shaft
+    >>> from torsional.powertrain import Powertrain
+    >>> from torsional.system import assemble
+    >>> pair = assemble(Powertrain({"a": Inertia(1.0), "b": Inertia(2.0), "s": Shaft("a", "b", 1e4)}))
+    >>> equilibrium(pair, {"a": [100.0, 200.0]}, hold="b").at(1).torque.round(6).tolist()
+    [-200.0]
     """
 
     names: tuple[str, ...]

@@ -111,6 +111,13 @@ def model_hysteresis(
 
     The absorber is taken in its detail where the model has one.  ``turned`` and ``held`` name other nodes.
     Raises ModelError for a model without these places.
+
+    ``speed`` [rad/s], ``sweep``, ``centre`` [rad] and ``rate`` [rad/s] as in `hysteresis`.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> float(model_hysteresis(truck, 0.0, 0.1).stiffness.round().item())  # Nm/rad: 13e3 + 20 Nms/rad · 3°/s over 0.1
+    13010.0
     """
     first, last = absorber_ends(model)
     system = assemble(model.detailed().powertrain(gear))

@@ -45,6 +45,12 @@ def run_up(
     a duration or a step that is none.
 
     Dataset of `transient` with what `torsional.studies.scenarios.figures.read_off` adds.
+
+    >>> import torsional
+    >>> truck = torsional.load_model("examples/truck_dmf.yaml")
+    >>> run = run_up(truck, 1000 * torsional.RPM, 1000.0, 0.1)
+    >>> round(float(run.torque_highest.sel(element="dmf")))  # Nm
+    1156
     """
     for name, value in (("duration", duration), ("step", step)):
         if value is not None and not 0 < value < math.inf:
