@@ -14,7 +14,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LISTING = re.compile(r"^`((?:src|tests)/[^`]+)`:\n\n```python\n(.*?)^```$", re.M | re.S)
-LINE = re.compile(r"^```python\n(from \.[^\n]+)\n```$", re.M)
+ADDED = re.compile(r"^Added to `(src/[^`]+)`(?:(?!\n\n).)*:\n\n```python\n(.*?)^```$", re.M | re.S)
+BEFORE = {"A command": "An analysis"}
+"""What a recipe builds upon."""
 
 
 def recipes() -> dict[str, str]:
@@ -25,23 +27,35 @@ def recipes() -> dict[str, str]:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("title", ["A force law", "An absorber", "An analysis"])
+@pytest.mark.parametrize("title", list(recipes()))
 def test_recipe(title: str, tmp_path: Path) -> None:
     for part in ("src", "tests", "examples", "pyproject.toml", ".importlinter", "CONTRIBUTING.md"):
         place, copy = ROOT / part, tmp_path / part
         kept = shutil.ignore_patterns("__pycache__", "reference", "validation")
         shutil.copytree(place, copy, ignore=kept) if place.is_dir() else shutil.copy(place, copy)
-    listings = dict(LISTING.findall(recipes()[title]))
-    stub = tmp_path / "src/torsional/__init__.pyi"
-    lines = LINE.findall(recipes()[title])
-    for name, text in listings.items():
-        assert not (tmp_path / name).exists()
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    stub.write_text(stub.read_text(encoding="utf-8") + "".join(f"{line}\n" for line in lines), encoding="utf-8")
-    assert 2 <= len(listings) + bool(lines) <= 3
+    for earlier in (BEFORE.get(title), title):
+        written, added = followed(tmp_path, recipes()[earlier]) if earlier else ([], [])
+    assert 2 <= len(written) + len(added) <= 3
+    sources = [name for name in (*written, *added) if name.startswith("src/") and name.endswith(".py")]
     if find_spec("ruff"):
-        run(tmp_path, "-m", "ruff", "check", "--no-cache", *listings)
-    run(tmp_path, "-m", "pytest", "-q", *listings)
+        run(tmp_path, "-m", "ruff", "check", "--no-cache", *written, *added)
+        run(tmp_path, "-m", "ruff", "format", "--check", "--no-cache", *written, *added)
+    if find_spec("mypy"):
+        run(tmp_path, "-m", "mypy", *sources)
+    run(tmp_path, "-m", "pytest", "-q", *written)
+
+
+def followed(folder: Path, recipe: str) -> tuple[list[str], list[str]]:
+    """The files that a recipe writes, and those that it adds to."""
+    listings, additions = dict(LISTING.findall(recipe)), dict(ADDED.findall(recipe))
+    for name, text in listings.items():
+        assert not (folder / name).exists()
+        (folder / name).write_text(text, encoding="utf-8")
+    for name, text in additions.items():
+        gap = "\n\n" if name.endswith(".py") else ""
+        (folder / name).write_text((folder / name).read_text(encoding="utf-8") + gap + text, encoding="utf-8")
+        assert len((folder / name).read_text(encoding="utf-8").splitlines()) <= 300
+    return list(listings), list(additions)
 
 
 def run(folder: Path, *arguments: str) -> None:
