@@ -63,5 +63,7 @@ def test_one_name_for_one_thing() -> None:
         dataset({"torque": (("speed",), [0.1], "angle")}, speed, analysis="x")
     with pytest.raises(ModelError, match="third argument"):
         dataset({}, {"moonlight": ([0.1], "")}, analysis="x")
+    with pytest.raises(ModelError, match=r"coordinate is \(values, quantity\).*speed"):
+        dataset({}, {"speed": (("speed",), [100.0], "speed")}, analysis="x")  # type: ignore[dict-item]
     told = dataset({"wear": (("speed",), [0.1], "ratio")}, speed, {"wear": "share of a lining"}, analysis="x")
     assert told.wear.attrs["quantity"] == "ratio"

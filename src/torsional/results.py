@@ -170,6 +170,10 @@ def dataset(
     ('Nm', 'rad/s')
     """
     told = [(name, quantity) for name, (_, _, quantity) in variables.items()]
+    for name, given in coordinates.items():
+        if not isinstance(given[1], str):
+            remedy = "dimensions stand before the values of a variable, not of a coordinate"
+            raise ModelError("a coordinate is (values, quantity)", where=name, found=repr(given)[:60], remedy=remedy)
     for name, quantity in [*told, *((name, given[1]) for name, given in coordinates.items())]:
         if name not in means:
             _known(name, quantity)

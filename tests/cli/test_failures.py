@@ -52,6 +52,7 @@ BAD = [
     (["modes"], ["MODEL", "torsional modes --help"]),
     (["mods"], ["'mods'", "'modes'", "torsional --help"]),
     (["modes", TRUCK, "--geer", "1"], ["--geer", "--gear"]),
+    (["modes", TRUCK, "--gear"], ["'--gear' requires an argument", "torsional modes --help"]),
     (["map", TRUCK, "--worst", "0"], ["--worst", "'0'", ">= 1"]),
     (["map", TRUCK, "--worst", "few"], ["--worst: a whole number is wanted; found 'few'"]),
     (["modes", TRUCK, "--order", "three"], ["--order: a number is wanted", "'three'"]),

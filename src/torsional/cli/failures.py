@@ -60,7 +60,11 @@ def _run(arguments: list[str]) -> int:
         program, arguments = program.commands[arguments[0]], arguments[1:]
     else:
         arguments = arguments or ["--help"]
-    job: Any = program(args=arguments, prog_name=path, standalone_mode=False, help_option_names=HELP)
+    try:
+        job: Any = program(args=arguments, prog_name=path, standalone_mode=False, help_option_names=HELP)
+    except Exception as failure:
+        failure.command_path = path  # type: ignore[attr-defined]  # some of typer's own do not know where they arose
+        raise
     if callable(job):
         job()
     sys.stdout.flush()  # a reader that is gone is met here, not while Python shuts down
@@ -146,7 +150,7 @@ def _usage(failure: Any) -> int:
     if not hasattr(failure, "format_message"):
         return int(failure.exit_code)
     context = getattr(failure, "ctx", None)
-    path = context.command_path if context is not None else "torsional"
+    path = context.command_path if context is not None else getattr(failure, "command_path", "torsional")
     message = " ".join(failure.format_message().split()).rstrip(".")
     wanted = getattr(getattr(failure, "param", None), "help", None) or "" if message.startswith("Missing") else ""
     complain(f"{message}{': ' if wanted else ''}{wanted.rstrip('.')} (see '{path} --help')")
