@@ -5,7 +5,7 @@ import pytest
 
 from torsional.components import Coupling, GearPair, Inertia, Shaft
 from torsional.errors import ModelError
-from torsional.laws import Hinges
+from torsional.laws import Coulomb, Hinges, Jenkins, Karnopp, LuGre, Stribeck
 from torsional.powertrain import Powertrain
 from torsional.solvers.equilibrium import equilibrium, linearize
 from torsional.system import assemble
@@ -38,6 +38,28 @@ def test_springs_side_by_side_share_the_torque() -> None:
     told = dict(zip(point.names, point.angle, strict=True))
     assert told["dmf"] == pytest.approx(angle, rel=1e-9)
     assert point.torque.sum() == pytest.approx(500 + 2000, rel=1e-9)
+
+
+FRICTION = {
+    "washer": Jenkins(50.0, 25e3),
+    "Coulomb": Coulomb(50.0, 0.01),
+    "bristles": LuGre(1e5, 100.0, 40.0, 50.0, 0.05),
+    "band": Karnopp(40.0, 50.0, 0.01, 1e5),
+    "Stribeck": Stribeck(40.0, 50.0, 0.05, 0.001),
+}
+
+
+@pytest.mark.parametrize("name", FRICTION)
+def test_friction_carries_no_mean_torque(name: str) -> None:
+    """Vibration shakes it loose: a spring beside it holds 500 Nm alone, and without one nothing does."""
+    line = Powertrain({**LINE, "friction": Coupling("secondary", "engine", FRICTION[name])})
+    point = equilibrium(assemble(line), {"engine": 500.0}, hold="wheel")
+    told = dict(zip(point.names, zip(point.angle, point.torque, strict=True), strict=True))
+    assert told["dmf"] == pytest.approx((0.01 + 500 / 8e3, 500.0))
+    assert told["friction"] == pytest.approx((0.01 + 500 / 8e3, 0.0))
+    alone = Powertrain({**LINE, "dmf": Coupling("secondary", "engine", FRICTION[name])})
+    with pytest.raises(ModelError, match="no spring carries the mean torque"):
+        equilibrium(assemble(alone), {"engine": 500.0}, hold="wheel")
 
 
 def test_linearized_has_the_tangent() -> None:

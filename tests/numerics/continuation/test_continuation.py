@@ -275,6 +275,14 @@ def test_a_start_on_a_terminal_event_is_left() -> None:
     np.testing.assert_allclose(trace.points[-1].z, [-1.0, 0.0], rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("order", [("level", "apart"), ("apart", "level")])
+def test_a_start_on_an_event_is_left_whatever_else_is_watched(order: tuple[str, str]) -> None:
+    tests = {"level": lambda x, p: p - 1e-13, "apart": lambda x, p: x[0] + 3.0}
+    problem = circle(tests={name: tests[name] for name in order})
+    trace = followed(problem, np.array([1.0, 0.0]), settings=Settings(terminal=("level",)))
+    assert (trace.end, [name for name, _ in named(trace)]) == (End.TERMINAL, ["level", "fold", "level"])
+
+
 # --- the curve is not left ---
 
 

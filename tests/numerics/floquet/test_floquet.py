@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -11,6 +13,8 @@ from scipy.special import mathieu_a, mathieu_b
 from tests.validation.periodic_reference import Case, Stages, dmf12, flow, time_steady, two_stage
 
 from torsional.errors import ModelError
+from torsional.laws import Jenkins, LuGre, Polynomial
+from torsional.numerics.floquet.remembering import monodromy_remembering
 from torsional.numerics.floquet.sampled import monodromy_sampled
 from torsional.numerics.linear.exponential import exponential, exponential_less_one
 from torsional.numerics.piecewise.basis import StageBases, coordinates
@@ -320,3 +324,83 @@ def test_finely_sampled_stages_come_near_the_exact_product() -> None:
 def test_samples_must_be_a_multiple_of_four() -> None:
     with pytest.raises(ModelError, match="multiple of four"):
         monodromy_sampled(random_case(0).coordinates, np.zeros((6, 2)), np.zeros((6, 2)), 1.0)
+
+
+# --- laws that remember ---
+
+
+def monodromy_of_washer(half_width: float, samples: int = 64) -> tuple[np.ndarray, np.ndarray]:
+    """Of a disc on a spring of 3 with a washer that slips at 0.1 rad, swung over a ``half_width`` with ω = 1.7; and
+    the flow of the disc where the washer sticks, by its closed form."""
+    washer, period, damping = Jenkins(0.2, 2.0), TWO_PI / 1.7, 0.3
+    tau = TWO_PI * np.arange(samples) / samples
+    state = coordinates([[1.0]], [[damping]], [[3.0]], [[1.0]])
+    found = monodromy_remembering(
+        state,
+        [(washer.address, washer.packed)],
+        np.ones(1),
+        np.zeros(1),
+        half_width * np.cos(tau)[None],
+        -1.7 * half_width * np.sin(tau)[None],
+        period,
+    )
+    return found, expm(period * np.array([[0.0, 1.0], [-3.0 - washer.stiffness, -damping]]))
+
+
+def test_a_washer_that_sticks_is_a_spring_and_keeps_what_it_was_given() -> None:
+    """Two multipliers of 1 kgm² on 3 + 2 Nm/rad, and one of one: how far the washer has slipped before stays."""
+    for samples in (16, 64):
+        found, stuck = monodromy_of_washer(0.04, samples)
+        expected = [*np.linalg.eigvals(stuck), 1.0]
+        step = TWO_PI / 1.7 / samples  # the washer's torque is a ramp over each step
+        np.testing.assert_allclose(ordered(np.linalg.eigvals(found)), ordered(np.array(expected)), atol=0.5 * step**2)
+
+
+def test_a_washer_that_slips_forgets() -> None:
+    """However its memory is disturbed, after a cycle that slips both ways it is what the motion makes of it."""
+    found, _ = monodromy_of_washer(0.4)
+    values = np.abs(ordered(np.linalg.eigvals(found)))
+    assert values[1] > 0.1 and values[2] < 1e-12
+
+
+@pytest.mark.parametrize(("damping", "order", "least"), [(0.0, 2, 1e-3), (0.5, 1, 0.02)])
+def test_bristles_beside_a_smooth_law_against_integration(damping: float, order: int, least: float) -> None:
+    """ż = u − σ0 |u| z/g(u) and a cubic spring along a given motion, linearised by hand and integrated to 1e-10."""
+    bristles, cubic, omega = LuGre(20.0, damping, 1.0, 1.6, 0.5), Polynomial((2.0, 0.0, 5.0)), 2.3
+    W, size, period = np.array([[-1.0, 1.0], [1.0, 0.0]]), np.array([0.2, 0.3]), TWO_PI / 2.3
+    state = coordinates(np.diag([1.0, 0.5]), 0.2 * np.eye(2), np.diag([3.0, 1.0]), W)
+
+    def motion(tau: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Rates change their sign at samples, where the bristles' law has a kink."""
+        return np.multiply.outer(size, np.cos(tau)), np.multiply.outer(-omega * size, np.sin(tau))
+
+    def bend(u: float, z: float) -> tuple[float, float, float]:
+        """ż and its derivatives by u and z."""
+        raised = 0.6 * np.exp(-((u / 0.5) ** 2))
+        g, slope = 1.0 + raised, -2.0 * u / 0.25 * raised
+        return u - 20.0 * abs(u) * z / g, 1.0 - 20.0 * z * (np.sign(u) * g - abs(u) * slope) / g**2, -20.0 * abs(u) / g
+
+    def derivative(t: float, y: np.ndarray) -> np.ndarray:
+        (_, x), (u, _) = motion(omega * t)
+        flow, by_rate, by_memory = bend(float(u), y[0])
+        d = y[1:].reshape(state.size + 1, -1)
+        angle, rate = state.angle_rows @ d[:-1], state.rate_rows @ d[:-1]
+        d_flow = by_rate * rate[0] + by_memory * d[-1]
+        torque = np.array([20.0 * d[-1] + damping * d_flow, (2.0 + 15.0 * x**2) * angle[1]])
+        moved = state.matrix @ d[:-1] - state.rate_rows.T @ torque
+        return np.concatenate([[flow], np.vstack([moved, d_flow]).ravel()])
+
+    end = np.zeros(1)
+    for _ in range(3):  # the bristles' own motion settles
+        start = np.concatenate([end[:1], np.eye(state.size + 1).ravel()])
+        for half in (0.0, 0.5 * period):
+            span = (half, half + 0.5 * period)
+            start = end = solve_ivp(derivative, span, start, method="DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
+    expected, errors = end[1:].reshape(state.size + 1, -1), []
+    laws = [(law.address, law.packed) for law in (bristles, cubic)]
+    for samples in (256, 512, 1024):
+        given = motion(TWO_PI * np.arange(samples) / samples)
+        found = monodromy_remembering(state, laws, np.array([1.0, 0.0]), np.zeros(2), *given, period)
+        errors.append(np.abs(found - expected).max())
+    assert errors[-1] < least
+    assert np.log2(errors[0] / errors[-1]) / 2.0 > order - 0.1

@@ -196,6 +196,17 @@ def test_a_linear_system_and_a_missing_speed_are_refused_in_words() -> None:
         periodic_response(oscillator(two_stage()), driven(1.0), (1.0, 2.0), parameter="amplitude")
     with pytest.raises(ModelError, match="no such parameter"):
         periodic_response(oscillator(two_stage()), driven(1.0), (1.0, 2.0), parameter="torqe", speed=1.0)
+    with pytest.raises(ModelError, match="speeds are above zero"):
+        periodic_response(oscillator(two_stage()), driven(1.0), (0.0, 2.0))
+
+
+def test_an_amplitude_may_pass_zero() -> None:
+    """Turned by half a period the motion of −a is that of a: in the first stage a straight line through rest."""
+    given = {"parameter": "amplitude", "speed": 2.0, "highest_order": 3, "at": [-0.5, 0.5], "depth": 0}
+    found = periodic_response(oscillator(two_stage()), driven(1.0), (-0.5, 0.5), **given)  # type: ignore[arg-type]
+    low, high = (found.twist.sel(element="spring", order=1.0).values[found.value.values == v][0] for v in (-0.5, 0.5))
+    assert abs(low + high) < 1e-12 < abs(high)
+    assert abs(high) == pytest.approx(0.5 / abs(1 - 2.0**2 + 1j * 0.01 * 2.0), rel=1e-9)
 
 
 def test_points_asked_for_are_judged_alike_where_the_parameter_runs_backwards() -> None:

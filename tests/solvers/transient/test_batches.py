@@ -78,6 +78,16 @@ def test_lines_that_are_not_made_for_the_loop_say_so(name: str, reason: str) -> 
     assert set(found.kind.values.ravel().tolist()) == {"periodic"}
 
 
+@pytest.mark.parametrize("count, expected", [(4, 4), (None, 1)])
+def test_rows_run_side_by_side_where_processors_are_only_counted(
+    monkeypatch: pytest.MonkeyPatch, count: int | None, expected: int
+) -> None:
+    """Not every system tells which processors a process may use, and some tell nothing."""
+    monkeypatch.delattr("os.sched_getaffinity", raising=False)
+    monkeypatch.setattr("os.cpu_count", lambda: count)
+    assert batches._processors() == expected
+
+
 def test_a_row_begins_as_a_march_does() -> None:
     model, speed = shipped("truck_dmf_straight_spring"), 1000.0 * RPM
     system = assemble(model.detailed().powertrain(model.top_gear))

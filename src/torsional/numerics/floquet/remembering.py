@@ -105,7 +105,8 @@ def monodromy_remembering(
 
     ``linear``: `coordinates` with the ``reference`` stiffness (m,) [Nm/rad] of each connection in K; ``laws``: address
     of the kernel and parameters of each; ``remembers`` (m,) 0 or 1; ``angles``, ``rates`` (m, samples) of the motion.
-    The error falls with the square of the samples for smooth laws.
+    The error falls with the square of the samples for smooth laws; with their number alone where a law that remembers
+    gives a torque of the rate as well, which is the mean one over a step.
     """
     samples = angles.shape[1]
     step = period / samples
