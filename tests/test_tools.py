@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 
@@ -80,6 +82,17 @@ def test_compiled_functions_are_reached_through_names(tools: dict[str, ModuleTyp
     reached = names.reached(["torsional/a.py:10"])
     assert {name for _, name in reached} == {"shown", "inner", "deep", "CONSTANT"}
     assert names.importers("torsional/b.py") == {"torsional/a.py", "torsional/b.py"}
+
+
+def test_functions_that_run_in_threads_are_recorded(tools: dict[str, ModuleType], tmp_path: Path) -> None:
+    before = threading.getprofile()
+    recorder = tools["reach"].Recorder(tmp_path / "reach.jsonl", ROOT)
+    for _ in recorder.watched(None):
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(package, tmp_path).result()
+    if recorder.ran:  # empty where another profiler is at work
+        assert f"tests/test_tools.py:{package.__code__.co_firstlineno}" in recorder.ran
+    assert threading.getprofile() is before
 
 
 def test_machine_code_of_whatever_imports_a_change_is_dropped(tools: dict[str, ModuleType], tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ import ast
 import cProfile
 import json
 import os
+import threading
 import time
 from collections.abc import Iterable, Iterator
 from functools import cached_property
@@ -40,17 +41,25 @@ class Recorder:
 
     def watched(self, call: Any) -> Iterator[None]:
         """One phase of a test under the profiler."""
-        profile = cProfile.Profile(subcalls=False, builtins=False)
+        profiles = [cProfile.Profile(subcalls=False, builtins=False)]
+
+        def in_thread(*_: Any) -> None:
+            profiles.append(cProfile.Profile(subcalls=False, builtins=False))
+            profiles[-1].enable()  # in this thread, in place of what called it
+
         began = time.perf_counter()
         try:
-            profile.enable()
+            profiles[0].enable()
         except ValueError:  # another profiler is at work
             yield
             return
+        threading.setprofile(in_thread)
         yield
-        profile.disable()
+        threading.setprofile(None)  # type: ignore[arg-type]
+        profiles[0].disable()
         self.seconds += time.perf_counter() - began
-        codes = (entry.code for entry in profile.getstats() if not isinstance(entry.code, str))
+        stats = (entry for profile in profiles for entry in profile.getstats())
+        codes = (entry.code for entry in stats if not isinstance(entry.code, str))
         inside = ((os.path.relpath(c.co_filename, self.sources), c.co_firstlineno) for c in codes)
         self.ran |= {f"{name}:{line}" for name, line in inside if not name.startswith("..") and name.endswith(".py")}
 

@@ -14,6 +14,7 @@ from tests.numerics.modes.counting import count_below
 
 from torsional.errors import ModelError
 from torsional.numerics.linear.null_space import eliminate, transformed
+from torsional.numerics.modes import jacobi
 from torsional.numerics.modes.undamped import Modes, modes
 
 HERTZ = 2.0 * np.pi
@@ -317,6 +318,20 @@ def test_negative_pivots_count_the_modes_below(seed: int) -> None:
             assert count_below((low + high) / 2.0, *arrays) == below
     if omega[-1] > 0.0:
         assert count_below(1.1 * omega[-1], *arrays) == len(omega)
+
+
+@pytest.mark.parametrize("graded, most", [(True, 5), (False, 8)])
+def test_few_sweeps_make_rows_orthogonal(monkeypatch: pytest.MonkeyPatch, graded: bool, most: int) -> None:
+    """Twelve rows, from 1 down to 5e-4 as the factors before them grade them, or parallel but for a thousandth."""
+    monkeypatch.setattr(jacobi, "SWEEPS", most)
+    for seed in range(3):
+        rows = np.random.default_rng(seed).normal(size=(12, 12))
+        rows = rows * 0.5 ** np.arange(12)[:, None] if graded else rows[:1] + 1e-3 * rows
+        turned = rows[:, :, None].copy()
+        squares = jacobi.orthogonalize_rows.py_func(turned)[:, 0]
+        gram = turned[:, :, 0] @ turned[:, :, 0].T / np.sqrt(np.outer(squares, squares))
+        np.testing.assert_allclose(gram, np.eye(12), rtol=0, atol=1e-13)
+        assert np.sort(squares) == pytest.approx(np.linalg.svd(rows, compute_uv=False)[::-1] ** 2, rel=1e-9)
 
 
 # --- batches and edges -----------------------------------------------------------------------------------------------

@@ -150,7 +150,7 @@ def test_a_motion_that_passes_hinges_without_end_is_refused() -> None:
     """A disc of 1 kgm² that flies at 1 rad/s between stops 2e-6 rad apart meets them half a million times a second."""
     law = [0.0, 1e-6, 1.0, 1e14, -1e-6, -1.0, 1e14]
     motion = PiecewiseMotion(oscillator(law), [[0.0]], TWO_PI, 4)
-    with pytest.raises(ModelError, match="passes a hinge without end.* enormous stiffness"):
+    with pytest.raises(ModelError, match=r"passes a hinge without end.* enormous stiffness"):
         motion.flow(start(motion, [0.0], [1.0]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -23,6 +24,8 @@ from torsional.solvers.periodic import (
 )
 from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.response import Exploration, explorer_of
+from torsional.solvers.periodic.start import _bent
+from torsional.solvers.periodic.subharmonic import read
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -207,6 +210,40 @@ def test_an_amplitude_may_pass_zero() -> None:
     low, high = (found.twist.sel(element="spring", order=1.0).values[found.value.values == v][0] for v in (-0.5, 0.5))
     assert abs(low + high) < 1e-12 < abs(high)
     assert abs(high) == pytest.approx(0.5 / abs(1 - 2.0**2 + 1j * 0.01 * 2.0), rel=1e-9)
+
+
+# --- parts of it ---
+
+
+def test_a_branch_is_read_wherever_it_passes_a_speed() -> None:
+    """Along 3 p − 1 to the fold at 4 and back: straight lines between its points lie on it, each point counts once."""
+    p, speeds = np.array([1.0, 2.0, 4.0, 3.0, 0.5]), np.array([5.0, 7.0, 15.0, 20.0, 35.0, 40.0, 45.0])
+    scale = SimpleNamespace(scale=np.array([1.0, 10.0]))
+    branch = SimpleNamespace(scaled=np.stack([3 * p - 1, p], axis=1), problem=scale)
+    guesses, columns, stretch = read(branch, speeds)  # type: ignore[arg-type]
+    assert np.bincount(columns, minlength=7).tolist() == [1, 1, 2, 2, 2, 1, 0]
+    assert guesses[:, 1] == pytest.approx(speeds[columns] / 10)
+    assert guesses[:, 0] == pytest.approx(3 * guesses[:, 1] - 1)
+    assert (np.minimum(p[stretch], p[stretch + 1]) <= guesses[:, 1]).all()
+
+
+def test_bending_a_law_from_a_straight_spring_ends_on_a_solution() -> None:
+    system = oscillator(Hinges(3.0, (0.5, -0.2), (1.0, -1.0), (4.0, 6.0)), damping=0.3)
+    problem = explorer_of(system, driven(2.0, 1.0), (1.0, 4.0), Exploration(highest_order=7)).problem(1.0)
+    (guess,) = _bent(problem, 2.0)
+    found = problem.at(guess, 2.0)
+    assert found.converged and np.abs(found.z - guess).max() < 1e-8
+    assert np.abs(problem.linearised(guess)[0]).max() < 1e-8
+
+
+def test_a_correction_where_there_is_no_solution_does_not_converge() -> None:
+    """A spring that yields at k Nm holds no mean torque of 2 Nm with k = 1."""
+    spring = Variation("k", "Nm/rad", lambda k: oscillator(Hinges(k, (1.0,), (1.0,), (-k,))))
+    asked = Exploration(parameter=spring, speed=3.0, highest_order=3)
+    problem = explorer_of(spring.build(3.0), driven(0.1, 2.0), (2.5, 3.5), asked).problem(1.0)
+    held = problem.at(problem.point_of(np.array([[2.0 / 3.0, 0.0]], dtype=complex), 3.0), 3.0)
+    assert held.converged and problem.harmonics_of(held.z)[0, 0].real == pytest.approx(2.0 / 3.0)
+    assert not problem.at(held.z, 1.0).converged
 
 
 def test_points_asked_for_are_judged_alike_where_the_parameter_runs_backwards() -> None:

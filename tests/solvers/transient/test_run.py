@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.linalg import expm
 
 from torsional.components import Coupling, Inertia, Shaft
 from torsional.engine import Excitation
@@ -170,6 +171,18 @@ def test_a_stored_run_goes_on_to_the_last_bit(tmp_path: Path) -> None:
         late = whole[name].values[-501:] if "time" in whole[name].dims else whole[name].values
         np.testing.assert_array_equal(second[name].values, late, err_msg=name)
     np.testing.assert_array_equal(second.time.values, whole.time.values[-501:])
+
+
+def test_the_explicit_integrator_goes_on_with_the_rotation_that_dampers_count_from() -> None:
+    """x″ = 50 − 100 x − 8 (ẋ − δ), δ̇ = (ẋ − δ)/T from rest, by its exponential; in two runs, and in one."""
+    line, push = spring(100.0, 8.0), TorqueHistory("disc", (0.0,), (50.0,))
+    given = {"method": "explicit", "tolerance": 1e-10, "output": 0.05, "reference_time": 0.5, "speed": SPEED}
+    whole, half = (transient(line, push, time, "rest", **given) for time in (0.6, 0.3))  # type: ignore[arg-type]
+    rest = transient(line, push, 0.3, half, **given)  # type: ignore[arg-type]
+    rates = np.array([[0.0, 1.0, 0.0, 0.0], [-100.0, -8.0, 8.0, 50.0], [0.0, 2.0, -2.0, 0.0], np.zeros(4)])
+    exact = np.array([expm(rates * time)[0, 3] for time in whole.time.values])
+    np.testing.assert_allclose(whole.angle.values[:, 0], exact, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(rest.angle.values[:, 0], exact[6:], rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("other", [{"spectral_radius": 0.5}, {"drives": thirds(60.0)}], ids=str)

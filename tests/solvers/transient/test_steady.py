@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,9 @@ from torsional.files import load_model
 from torsional.laws import Hinges, Law, Polynomial
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import TorqueHistory, engine_drive, steady_state, steady_sweep
+from torsional.solvers.transient.marching import Accuracy
+from torsional.solvers.transient.problem import Problem
+from torsional.solvers.transient.steady import stroboscope
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -73,6 +78,16 @@ def test_two_frequencies_never_repeat_themselves() -> None:
     assert abs(found.attrs["exponent"]) < 1e-4 and found.attrs["dimension"] == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.parametrize("periods", [1, 4])
+def test_neighbours_of_a_linear_motion_without_damping_keep_their_distance(periods: int) -> None:
+    """Its size is an energy, which Newmark's steps keep: the exponent of the first period is zero like that of all."""
+    system = assemble(Powertrain({"disc": Inertia(2.0), "spring": Shaft("ground", "disc", 50.0)}))
+    problem = Problem.of(system, Excitation(("disc",), [1], 4.0, [[1.0]]), None)
+    strobe = stroboscope(problem, Accuracy(0.02, "newmark"), "rest", None)
+    strobe.run(2)
+    assert strobe.size > 0.05 and abs(strobe.exponent(periods)) < 1e-8
+
+
 def test_what_does_not_repeat_itself_drives_no_steady_motion() -> None:
     with pytest.raises(ModelError, match="repeats itself"):
         steady_state(oscillator(Polynomial((1.0,)), 0.1), TorqueHistory("disc", (0.0,), (1.0,)), speed=10.0)
@@ -86,6 +101,18 @@ def test_what_the_step_makes_of_contacts_is_not_called_the_motion() -> None:
     found = steady_state(system, given, hold="vehicle", most_periods=300, parts=2)
     assert found.attrs["kind"] == "periodic"
     assert found.attrs["step"] == pytest.approx(4.464e-5, rel=1e-3) and "halved" in found.attrs["refined"]
+
+
+def test_a_motion_that_half_the_step_only_quietens_is_noted() -> None:
+    """A steady motion and 1 % of a free vibration, which fades to e⁻³ in the 320 periods that are given."""
+    system = assemble(Powertrain({"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 1.0, 0.0048)}))
+    problem = Problem.of(system, Excitation(("disc",), [1], 0.5 * (1 + 5**0.5), [[1.0]]), None)
+    strobe = stroboscope(problem, Accuracy(0.05, spectral_radius=1.0), "vibrating", None)
+    strobe.state = strobe.state.moved(0.0, 0.01)
+    strobe.run(16)
+    assert strobe._by_half_the_step(0, 1.0, 8, 1e-9) == (0, 1.0)
+    changes = [float(number) for number in re.findall(r"\d\.\de-\d\d", strobe.notes["unresolved"])]
+    assert changes[1] == pytest.approx(changes[0] * np.exp(-3.0), rel=0.15) and "refined" not in strobe.notes
 
 
 def test_a_motion_that_is_lost_is_told() -> None:

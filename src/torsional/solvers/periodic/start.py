@@ -103,13 +103,13 @@ def _bent(problem: HarmonicProblem, value: float) -> Iterator[Array]:
             laws[place] = _partly(own, float(straight), share)
         return split.system.with_connections(laws=tuple(laws))
 
-    bent = VariedProblem(
-        dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0), problem.base_order, build
-    )
+    varied = dataclasses.replace(setting, load=load, speed=speed, parameter_scale=1.0)
+    bent = VariedProblem(varied, problem.base_order, build, (0.0, 1.0))
     mean, linear = bent.linear_size(0.0)
     at = np.zeros((mean.size, 2), dtype=complex)
     at[:, 0], at[:, 1] = mean, linear
-    trace = followed(bent, bent.point_of(at, 0.0), 1, (0.0, 1.0), HOMOTOPY)
+    first = bent.at(bent.point_of(at, 0.0), 0.0).z  # exact: derivatives by the share are those of the guess
+    trace = followed(bent, first, 1, (0.0, 1.0), HOMOTOPY)
     if trace.points and trace.parameter[-1] == 1.0:
         yield _moved(trace.points[-1].z, problem, value)
 

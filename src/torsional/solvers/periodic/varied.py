@@ -21,11 +21,18 @@ NUDGE = 1e-5
 
 
 class VariedProblem(HarmonicProblem):
-    """A problem whose system is built anew at each value of the parameter; its derivative is a central difference."""
+    """A problem whose system is built anew at each value of the parameter; its derivative is a central difference, at
+    the ``bounds`` of what can be built one to the inside."""
 
-    def __init__(self, setting: Setting, base_order: float, build: Callable[[float], System]) -> None:
+    def __init__(
+        self,
+        setting: Setting,
+        base_order: float,
+        build: Callable[[float], System],
+        bounds: tuple[float, float] = (-np.inf, np.inf),
+    ) -> None:
         super().__init__(setting, base_order)
-        self.build = build
+        self.build, self.bounds = build, bounds
         self._frozen: OrderedDict[float, HarmonicProblem] = OrderedDict()
 
     def frozen(self, value: float) -> HarmonicProblem:
@@ -49,8 +56,10 @@ class VariedProblem(HarmonicProblem):
 
     def _slope(self, z: Array) -> Array:
         """Derivative of the residual by the parameter."""
-        sides = [super(VariedProblem, self).linearised(np.append(z[:-1], z[-1] + s * NUDGE))[0] for s in (1, -1)]
-        return np.asarray((sides[0] - sides[1]) / (2 * NUDGE * self.scale[-1]))
+        low, high = (bound / self.scale[-1] for bound in self.bounds)
+        ways = (float(z[-1] + NUDGE <= high), -float(z[-1] - NUDGE >= low))
+        sides = [super(VariedProblem, self).linearised(np.append(z[:-1], z[-1] + s * NUDGE))[0] for s in ways]
+        return np.asarray((sides[0] - sides[1]) / ((ways[0] - ways[1]) * NUDGE * self.scale[-1]))
 
     def correct(self, guess: Array, normal: Array) -> Corrected:
         """Newton's method across a normal, as the compiled one; derivatives by the parameter are those of the guess."""
