@@ -32,6 +32,8 @@ def test_table_for_people(torsional: Run) -> None:
     rows = [line.split() for line in told.out.splitlines() if line.split()[:1] in (["5"], ["12"])]
     assert [row[:2] for row in rows] == [["5", "0"], ["5", "2000"], ["12", "0"], ["12", "2000"]]
     data = model_hysteresis(load_model(SHOES), np.array([0, 2000]) * RPM, np.radians([5.0, 12.0]))
+    assert (data.attrs["turned"], data.attrs["held"]) == ("primary", "secondary")
+    assert not data.angle.sel(node="secondary").values.any() and data.angle.sel(node="primary").values.any()
     loss = data.loss.values.T.ravel()
     assert [float(row[4]) for row in rows] == pytest.approx(loss, rel=1e-3)
     assert float(data.loss[1, 1]) > float(data.loss[0, 1]) > 0

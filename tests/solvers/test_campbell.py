@@ -13,9 +13,11 @@ from torsional.components import Inertia, Shaft
 from torsional.engine import CrankLayout
 from torsional.errors import ModelError
 from torsional.model import Landmarks, Model
-from torsional.solvers.campbell import campbell
+from torsional.powertrain import Powertrain
+from torsional.solvers.campbell import _met, campbell
 from torsional.solvers.map import response_map
 from torsional.solvers.run_up import full_load_response
+from torsional.system import assemble
 from torsional.units import RPM
 
 
@@ -70,6 +72,15 @@ def test_modes_of_a_pendulum_alone_rise_with_speed() -> None:
     expected = 3.0 * found.speed.values * np.sqrt(1 + inertia / 0.5) / (2 * np.pi)
     assert found.frequency.isel(gear=0, mode=1).values == pytest.approx(expected, rel=1e-12)
     assert not np.isfinite(found.crossing.values).any()
+
+
+def test_an_order_that_is_not_met_where_it_seems_to_be_is_told() -> None:
+    """Frequencies that are not those of the line: nothing is made up between them."""
+    parts = {"disc": Inertia(1.0), "spring": Shaft("ground", "disc", 100.0)}
+    line, speeds = assemble(Powertrain(parts)), np.array([20.0, 30.0])
+    assert _met(line, np.array([5.0, 30.0]), np.full(2, 10.0), 0, 0.5) == pytest.approx(20.0)
+    with pytest.raises(ModelError, match="the speed at which an order meets a mode was not found"):
+        _met(line, speeds, np.full(2, 25.0), 0, 1.0)
 
 
 def test_shares_add_up_and_gears_are_kept_apart() -> None:

@@ -26,6 +26,7 @@ from torsional.solvers.periodic.isolated import motion
 from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.solvers.periodic.start import _bent
 from torsional.solvers.periodic.subharmonic import read
+from torsional.solvers.periodic.verdict import verdict
 from torsional.system import System, assemble
 from torsional.units import RPM
 
@@ -225,6 +226,21 @@ def test_a_branch_is_read_wherever_it_passes_a_speed() -> None:
     assert guesses[:, 1] == pytest.approx(speeds[columns] / 10)
     assert guesses[:, 0] == pytest.approx(3 * guesses[:, 1] - 1)
     assert (np.minimum(p[stretch], p[stretch + 1]) <= guesses[:, 1]).all()
+
+
+def test_where_determinants_contradict_the_multipliers_decide_and_it_is_said() -> None:
+    explorer = explorer_of(
+        oscillator(Polynomial((1.0, 0.0, 0.1)), damping=0.05), driven(0.18), (0.8, 1.6), Exploration(highest_order=5)
+    )
+    explorer.explored()
+    branch = explorer.branches[0]
+    quiet = [point for point in branch.points if not point.event]
+    plain = verdict(branch.problem, quiet)
+    clear = np.abs(plain.multipliers - 1).min(axis=1) > 0.05
+    assert plain.confirmed[clear].all() and 0 < plain.stable[clear].mean() < 1
+    turned = verdict(branch.problem, [point._replace(values=-point.values) for point in quiet])
+    assert not turned.confirmed[clear].any()
+    np.testing.assert_array_equal(turned.stable[clear], plain.stable[clear])
 
 
 def test_bending_a_law_from_a_straight_spring_ends_on_a_solution() -> None:

@@ -10,6 +10,7 @@ from torsional.errors import ModelError
 from torsional.laws import Contacts, Hinges
 from torsional.powertrain import Powertrain
 from torsional.solvers.transient import MotionState, stage_changes, transient
+from torsional.solvers.transient.events import _crossings
 from torsional.system import assemble
 
 
@@ -24,6 +25,12 @@ def test_clearance_oscillator_closes_and_opens_in_time() -> None:
     np.testing.assert_allclose(events.time.values, times, atol=2e-6)
     np.testing.assert_allclose(np.abs(events.rate.values), 10.0, rtol=1e-4)
     assert events.stage.values.tolist() == ["free play", "stop", "free play", "stop"]
+
+
+def test_a_stage_that_is_only_touched_is_met_at_the_sample() -> None:
+    """The cubic 2 (t − 2)³ has its threefold zero at the sample, which rounding puts a little beyond it."""
+    ((time, rate),) = _crossings(np.arange(4.0), np.array([-12.0, -2.0, 0.0, -2.0]))
+    assert time == pytest.approx(2.0, abs=1e-9) and rate == pytest.approx(0.0, abs=1e-9)
 
 
 def test_stages_are_named_and_runs_of_other_lines_refused() -> None:
