@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,6 +15,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.laws import Hinges, Law, Polynomial, plain
+from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.periodic import (
     Variation,
@@ -23,8 +25,9 @@ from torsional.solvers.periodic import (
     varied_response,
 )
 from torsional.solvers.periodic.isolated import motion
+from torsional.solvers.periodic.problem import HarmonicProblem
 from torsional.solvers.periodic.response import Exploration, explorer_of
-from torsional.solvers.periodic.start import _bent
+from torsional.solvers.periodic.start import _bent, _lighter, _raised
 from torsional.solvers.periodic.subharmonic import read
 from torsional.solvers.periodic.verdict import verdict
 from torsional.system import System, assemble
@@ -243,13 +246,16 @@ def test_where_determinants_contradict_the_multipliers_decide_and_it_is_said() -
     np.testing.assert_array_equal(turned.stable[clear], plain.stable[clear])
 
 
-def test_bending_a_law_from_a_straight_spring_ends_on_a_solution() -> None:
+@pytest.mark.parametrize("way", [_bent, _raised, _lighter])
+def test_each_way_to_a_first_solution_ends_on_one(way: Callable[[HarmonicProblem, float], Iterator[Array]]) -> None:
     system = oscillator(Hinges(3.0, (0.5, -0.2), (1.0, -1.0), (4.0, 6.0)), damping=0.3)
     problem = explorer_of(system, driven(2.0, 1.0), (1.0, 4.0), Exploration(highest_order=7)).problem(1.0)
-    (guess,) = _bent(problem, 2.0)
-    found = problem.at(guess, 2.0)
-    assert found.converged and np.abs(found.z - guess).max() < 1e-8
-    assert np.abs(problem.linearised(guess)[0]).max() < 1e-8
+    guesses = list(way(problem, 2.0))
+    assert guesses
+    for guess in guesses:
+        found = problem.at(guess, 2.0)
+        assert found.converged and np.abs(found.z - guess).max() < 1e-8
+        assert np.abs(problem.linearised(guess)[0]).max() < 1e-8
 
 
 def test_a_correction_where_there_is_no_solution_does_not_converge() -> None:
