@@ -206,16 +206,13 @@ def labelled(
 
     data = {name: xr.Variable(dims, np.asarray(v), _described(q)) for name, (dims, v, q) in variables.items()}
     coords = {name: _coordinate(name, *given) for name, given in coordinates.items()}
-    plain = (str, int, float)
-    settings = {key: value if isinstance(value, plain) else json.dumps(value) for key, value in provenance.items()}
-    attrs = {"analysis": analysis, "torsional_version": __version__, "schema": SCHEMA, **settings}
-    return xr.Dataset(data, coords, attrs)
+    told = {key: v if isinstance(v, str | int | float) else json.dumps(v) for key, v in provenance.items()}
+    return xr.Dataset(data, coords, {"analysis": analysis, "torsional_version": __version__, "schema": SCHEMA, **told})
 
 
 def of_model(data: xr.Dataset, model: Model, gear: str | None = None) -> xr.Dataset:
     """The result with the model it is of in its attributes, and the ``gear`` where it is of one alone."""
-    engaged = {} if gear is None else {"gear": gear}
-    return data.assign_attrs(model=model.name, model_hash=model.hash, **engaged)
+    return data.assign_attrs(model=model.name, model_hash=model.hash, **({} if gear is None else {"gear": gear}))
 
 
 def _coordinate(name: str, values: Any, quantity: str, dimension: str = "") -> xr.Variable:
@@ -300,5 +297,4 @@ def load_results(path: str | Path) -> xr.Dataset:
 
 def _joined(values: xr.DataArray) -> xr.Variable:
     attrs = {key: value for key, value in values.attrs.items() if key != "complex"}
-    pair = values.values
-    return xr.Variable(values.dims[:-1], pair[..., 0] + 1j * pair[..., 1], attrs)
+    return xr.Variable(values.dims[:-1], values.values[..., 0] + 1j * values.values[..., 1], attrs)
