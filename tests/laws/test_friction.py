@@ -216,3 +216,11 @@ def test_stick_slip_as_an_integrator_of_its_own_finds_it() -> None:
 def test_values_refused(make: Any, said: str) -> None:
     with pytest.raises(ModelError, match=said):
         make()
+
+
+def test_bristles_slide_in_swings_that_bend_them_further_than_they_hold() -> None:
+    """Sliding begins at g_c/σ0 = 1e-5 rad to either side, whatever presses them and wherever the swing lies."""
+    for load in (1.0, 3.0):
+        law = LuGre(1e5, 300.0, 1.0, 1.5, 0.001, normal_load=load)
+        swings = np.array([0.9e-5, 1.1e-5])
+        assert law.changes_within(0.2 - swings, 0.2 + swings).tolist() == [False, True]

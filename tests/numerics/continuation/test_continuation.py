@@ -259,6 +259,23 @@ def test_an_event_in_a_hole_of_the_equations_is_given_its_doubt() -> None:
     assert event.z[0] == pytest.approx(event.parameter, abs=1e-12)
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_an_event_is_located_although_a_correction_on_the_way_to_it_fails(times: int) -> None:
+    class Refusing(Counted):
+        farthest, refused = -math.inf, 0
+
+        def correct(self, guess: Array, normal: Array) -> Corrected:
+            got = super().correct(guess, normal)
+            back, self.farthest = guess[-1] < self.farthest, max(self.farthest, guess[-1])
+            self.refused += back
+            return got._replace(converged=got.converged and not (back and self.refused <= times))
+
+    problem = Refusing(scalar(lambda x, p: x - p, tests={"level": lambda x, p: math.exp(3.0 * p) - 2.0}))
+    (event,) = followed(problem, np.zeros(2), 1, (0.0, 1.0)).events
+    assert problem.refused > times
+    assert event.parameter == pytest.approx(math.log(2.0) / 3.0, abs=1e-8) and event.within < 1e-7
+
+
 def test_a_terminal_event_is_the_last_point() -> None:
     problem = circle(tests={"down": lambda x, p: x[0] + 0.5})
     trace = followed(problem, np.array([1.0, 0.0]), settings=Settings(terminal=("down",)))

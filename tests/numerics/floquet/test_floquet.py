@@ -11,7 +11,7 @@ from scipy.special import mathieu_a, mathieu_b
 from tests.validation.periodic_reference import Case, Stages, dmf12, flow, time_steady, two_stage
 
 from torsional.errors import ModelError
-from torsional.laws import Jenkins, LuGre, Polynomial
+from torsional.laws import Coulomb, Jenkins, LuGre, Polynomial
 from torsional.numerics.floquet.remembering import monodromy_remembering
 from torsional.numerics.floquet.sampled import monodromy_sampled
 from torsional.numerics.linear.exponential import exponential, exponential_less_one
@@ -362,10 +362,11 @@ def test_a_washer_that_slips_forgets() -> None:
 
 
 @pytest.mark.parametrize(("damping", "order", "least"), [(0.0, 2, 1e-3), (0.5, 1, 0.02)])
-def test_bristles_beside_a_smooth_law_against_integration(damping: float, order: int, least: float) -> None:
-    """ż = u − σ0 |u| z/g(u) and a cubic spring along a given motion, linearised by hand and integrated to 1e-10."""
+def test_bristles_beside_smooth_laws_against_integration(damping: float, order: int, least: float) -> None:
+    """ż = u − σ0 |u| z/g(u), a cubic spring and smooth friction, linearised by hand and integrated."""
     bristles, cubic, omega = LuGre(20.0, damping, 1.0, 1.6, 0.5), Polynomial((2.0, 0.0, 5.0)), 2.3
-    W, size, period = np.array([[-1.0, 1.0], [1.0, 0.0]]), np.array([0.2, 0.3]), TWO_PI / 2.3
+    W, size = np.array([[-1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), np.array([0.2, 0.3, 0.1])
+    rubbing, period = Coulomb(0.4, 0.5), TWO_PI / 2.3
     state = coordinates(np.diag([1.0, 0.5]), 0.2 * np.eye(2), np.diag([3.0, 1.0]), W)
 
     def motion(tau: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
@@ -379,12 +380,13 @@ def test_bristles_beside_a_smooth_law_against_integration(damping: float, order:
         return u - 20.0 * abs(u) * z / g, 1.0 - 20.0 * z * (np.sign(u) * g - abs(u) * slope) / g**2, -20.0 * abs(u) / g
 
     def derivative(t: float, y: np.ndarray) -> np.ndarray:
-        (_, x), (u, _) = motion(omega * t)
+        (_, x, _), (u, _, v) = motion(omega * t)
         flow, by_rate, by_memory = bend(float(u), y[0])
         d = y[1:].reshape(state.size + 1, -1)
         angle, rate = state.angle_rows @ d[:-1], state.rate_rows @ d[:-1]
         d_flow = by_rate * rate[0] + by_memory * d[-1]
-        torque = np.array([20.0 * d[-1] + damping * d_flow, (2.0 + 15.0 * x**2) * angle[1]])
+        drag = 0.4 * 0.25 / (v**2 + 0.25) ** 1.5
+        torque = np.array([20.0 * d[-1] + damping * d_flow, (2.0 + 15.0 * x**2) * angle[1], drag * rate[2]])
         moved = state.matrix @ d[:-1] - state.rate_rows.T @ torque
         return np.concatenate([[flow], np.vstack([moved, d_flow]).ravel()])
 
@@ -395,10 +397,10 @@ def test_bristles_beside_a_smooth_law_against_integration(damping: float, order:
             span = (half, half + 0.5 * period)
             start = end = solve_ivp(derivative, span, start, method="DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
     expected, errors = end[1:].reshape(state.size + 1, -1), []
-    laws = [(law.address, law.packed) for law in (bristles, cubic)]
+    laws = [(law.address, law.packed) for law in (bristles, cubic, rubbing)]
     for samples in (256, 512, 1024):
         given = motion(TWO_PI * np.arange(samples) / samples)
-        found = monodromy_remembering(state, laws, np.array([1.0, 0.0]), np.zeros(2), *given, period)
+        found = monodromy_remembering(state, laws, np.array([1.0, 0.0, 0.0]), np.zeros(3), *given, period)
         errors.append(np.abs(found - expected).max())
     assert errors[-1] < least
     assert np.log2(errors[0] / errors[-1]) / 2.0 > order - 0.1
