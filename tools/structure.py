@@ -36,7 +36,7 @@ LAWS: dict[str, tuple[str, ...]] = {
     "Stribeck's curve": (r"exp\(-u \* u\)", r"exp\(-\(+rate / ", r"exp\(-np\.square\(u / "),
     "LuGre: rate of the bristles": (r"\* abs\(rate\) / curve", r"s0 \* abs\("),
     "Karnopp: what is held": (r"beyond = abs\(rate\) / band", r"2\.0 - np\.abs\(u\) / self\.stick_rate"),
-    "normal load": (r"load_centrifugal\[e\]", r"loads\.centrifugal\[e\]"),
+    "normal load": (r"load_centrifugal\[e\]", r"loads\.centrifugal\[e\]", r"loads\[LOAD_SQUARED"),
     "crank and piston": (r"s = \(across - offset\) / rod",),
 }
 """Shapes, in functions below `FLOORS`, that only a law written out has."""
