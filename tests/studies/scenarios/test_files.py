@@ -26,7 +26,7 @@ BAD = [
     ("gear_shift", "synchroniser.within=1 s", ["clutch.engages", "not in yet", "1.2 s", "1.55 s and later"]),
     ("gear_shift", "torque_from=1 s", ["torque_from", "the clutch is still open", "1.2 s and later"]),
     ("gear_shift", "duration=1.4 s", ["torque_from", "nothing would be seen"]),
-    ("stall", "torsional_scenario=2", ["torsional_scenario", "version", "allowed: 1"]),
+    ("stall", "torsional_scenario=2", ["torsional_scenario", "later torsional", "allowed: 1"]),
     ("engine_strat", "duration=1 s", ["engine_strat", "did you mean 'engine_start'?"]),
 ]
 
