@@ -102,9 +102,9 @@ def test_a_certificate_is_for_runs_with_steps(flywheel: System, method: str) -> 
 
 
 def test_a_certificate_of_steps_that_lose_the_motion_is_refused() -> None:
-    """Steps that settle under the run's torque do not under one beyond all numbers; none of them may pass unseen."""
-    system = spring(Hinges(100.0))
-    gentle, violent = (Excitation(("disc",), [0.0], 10.0, [[torque]]) for torque in (1.0, 1e308))
-    done = transient(system, gentle, 0.01, "rest")
-    with pytest.raises(ModelError, match=r"steps lose the motion|does not go on"):
-        certified(system, violent, done)
+    """A disc that nothing holds under T = 1e155 Nm: its energy, T² t²/2, passes the largest number at 0.1896 s."""
+    system = spring(Hinges(0.0, (1e200,), (1.0,), (1.0,)))
+    push = Excitation(("disc",), [0.0], 10.0, [[1e155]])
+    done = transient(system, push, 0.01, "rest")
+    with pytest.raises(ModelError, match=r"time 0\.1897 s: the steps lose the motion; found the motion grew beyond"):
+        certified(system, push, done, 6000)

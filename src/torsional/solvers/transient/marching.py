@@ -90,6 +90,13 @@ class Marched(NamedTuple):
     status: str
 
 
+def motion_lost(told: Marched, accuracy: Accuracy, where: str) -> ModelError:
+    """The refusal of a march whose steps lose the motion, to be raised."""
+    found = f"{told.status}, with a step of {accuracy.step:.3g} s"
+    remedy = "give stiff stops a contact time (damping), or take a smaller step"
+    return ModelError("the steps lose the motion", where=where, found=found, remedy=remedy)
+
+
 def marched(problem: Problem, state: MotionState, steps: int, accuracy: Accuracy, every: int = 1) -> Marched:
     """Go on from a state for ``steps`` steps and keep ``every`` one of them, the first and the last included."""
     kept = np.unique(np.append(np.arange(0, steps, every), steps))

@@ -7,12 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.numerics.stepping.batch import BLOCK, LITTLE, VIEWS
 from torsional.numerics.stepping.stroboscopic import repeats
 from torsional.solvers.transient.character import Character, dimension, drifts, named, restless
-from torsional.solvers.transient.marching import Accuracy, Marched, marched
+from torsional.solvers.transient.marching import Accuracy, Marched, marched, motion_lost
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, grounded, tangents
 from torsional.system import System
@@ -101,12 +100,7 @@ class Stroboscope:
         """Go on for some periods; ModelError where the steps lose the motion."""
         told = marched(self.problem, state, periods * self.steps, self.settled, every)
         if not np.isfinite(told.end.angle).all():
-            raise ModelError(
-                "the steps lose the motion",
-                where=show_speed(self.problem.start_speed),
-                found=f"{told.status}, with a step of {self.settled.step:.3g} s",
-                remedy="give stiff stops a contact time (damping), or take a smaller step",
-            )
+            raise motion_lost(told, self.settled, show_speed(self.problem.start_speed))
         return told
 
     def exponent(self, periods: int = PARTING) -> float:
