@@ -13,7 +13,8 @@ import pytest
 import torsional
 from torsional import ModelError
 from torsional.arguments import checked
-from torsional.studies import branches, region, subharmonic
+from torsional.quantities import branches, region
+from torsional.studies import subharmonic
 from torsional.units import RPM
 
 TRUCK = Path(__file__).parents[1] / "examples" / "truck_dmf.yaml"

@@ -31,8 +31,8 @@ from torsional.errors import ModelError
 from torsional.files import load_model
 from torsional.laws import Hinges
 from torsional.model import Model
+from torsional.quantities.branches import solutions_at
 from torsional.results import load_results
-from torsional.studies.branches import solutions_at
 from torsional.units import RPM
 
 Run = Callable[..., Any]

@@ -15,7 +15,7 @@ from tests.synthetic_branches import FOLD, MEAN, branches, region
 from torsional import plots
 from torsional.laws import Hinges
 from torsional.plots.branches import branch_colour, parameter_axis
-from torsional.studies.branches import solutions_at
+from torsional.quantities.branches import solutions_at
 from torsional.units import RPM
 
 LAW = Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], stop_stiffness=1e6)

@@ -32,8 +32,8 @@ from torsional.files import changed
 from torsional.laws import Law
 from torsional.model import Model
 from torsional.numerics.arrays import Array
+from torsional.quantities.branches import coexisting, solutions_at, without_stable
 from torsional.solvers.periodic import model_response, varied_response
-from torsional.studies.branches import coexisting, solutions_at, without_stable
 from torsional.system import assemble
 from torsional.units import QUANTITIES, show
 

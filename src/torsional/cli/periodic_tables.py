@@ -10,7 +10,7 @@ import xarray as xr
 from torsional.cli.tables import Column, Table
 from torsional.laws import Law
 from torsional.quantities import acceleration, swing, waveform
-from torsional.studies.branches import (
+from torsional.quantities.branches import (
     SHARE_SAMPLES,
     bifurcation_points,
     branch_numbers,

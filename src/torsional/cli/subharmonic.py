@@ -19,7 +19,7 @@ from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.studies.region import stretches
+from torsional.quantities.region import stretches
 from torsional.studies.subharmonic import full_load_curve, sought_region, within
 from torsional.units import QUANTITIES
 

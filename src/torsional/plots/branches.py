@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from torsional.numerics.arrays import Array
 from torsional.plots import style
 from torsional.quantities import acceleration, amplitude, swing
-from torsional.studies.branches import (
+from torsional.quantities.branches import (
     bifurcation_points,
     branch_numbers,
     coexisting,

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from torsional.plots import style
 from torsional.plots.maps import draw_limits
-from torsional.studies.region import boundary_curves
+from torsional.quantities.region import boundary_curves
 
 BOUNDARIES = {"period doubling": (style.INK, "-"), "fold": (style.COLOURS[1], "--")}
 COLOURS = "cividis_r"

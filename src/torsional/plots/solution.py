@@ -16,7 +16,7 @@ from torsional.numerics.arrays import Array
 from torsional.plots import style
 from torsional.plots.branches import look
 from torsional.quantities import cycles, waveform
-from torsional.studies.branches import SHARE_SAMPLES, letter, stage_parts, stage_shares
+from torsional.quantities.branches import SHARE_SAMPLES, letter, stage_parts, stage_shares
 
 STAGES = {"free play": "#ffffff", "stop": "#f2b48c"}
 STAGE_SHADES = ("#dfe9f2", "#aac6de", "#7ba5c9", "#5485b2")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from torsional import plots
 from torsional.plots import style
+from torsional.quantities.branches import stable_ranges
+from torsional.quantities.region import stretches
 from torsional.report.analysis import Variant
 from torsional.report.blocks import Block, Heading, Picture, Table, picture, table
 from torsional.report.labels import told
 from torsional.report.motions import Motions
 from torsional.report.pictures import in_gear
-from torsional.studies.branches import stable_ranges
-from torsional.studies.region import stretches
 from torsional.studies.subharmonic import full_load_curve, within
 
 

@@ -12,10 +12,10 @@ from torsional.errors import ModelError
 from torsional.laws import Law
 from torsional.model import Model
 from torsional.numerics.arrays import Array
+from torsional.quantities.branches import coexisting, solutions_at
 from torsional.report.finding import Finding
 from torsional.report.labels import told
 from torsional.solvers.periodic import model_response
-from torsional.studies.branches import coexisting, solutions_at
 from torsional.studies.subharmonic import sought_region, within
 from torsional.system import assemble
 

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from tests.synthetic_branches import region
 
-from torsional.studies.region import boundary_curves, crossings, smooth, stretches
+from torsional.quantities.region import boundary_curves, crossings, smooth, stretches
 from torsional.studies.subharmonic import closer_grid, round_steps, within
 from torsional.units import RPM
 

@@ -8,7 +8,7 @@ import xarray as xr
 from tests.synthetic_branches import FOLD, branches
 
 from torsional.laws import Hinges
-from torsional.studies.branches import (
+from torsional.quantities.branches import (
     bifurcation_points,
     coexisting,
     pieces,
