@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 import pytest
 from tests.shipped import shipped
 
-from torsional.studies.claims import CLAIMS, Outcome
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.base import Outcome
+from torsional.studies.register import claims
+from torsional.studies.trucks import Trucks
 
 
 @pytest.fixture(scope="session")
@@ -27,14 +28,14 @@ class Judged(Mapping[str, Outcome]):
 
     def __getitem__(self, id: str) -> Outcome:
         if id not in self.known:
-            self.known[id] = CLAIMS[id](self.trucks)
+            self.known[id] = claims()[id](self.trucks)
         return self.known[id]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(CLAIMS)
+        return iter(claims())
 
     def __len__(self) -> int:
-        return len(CLAIMS)
+        return len(claims())
 
 
 @pytest.fixture(scope="session")

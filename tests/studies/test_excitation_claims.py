@@ -8,10 +8,10 @@ import pytest
 from torsional.components import Inertia
 from torsional.engine.orders import HALF_ORDERS
 from torsional.solvers.operating import at_operating_point
+from torsional.studies.answers import input_shaft, main_order, responded
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.answers import input_shaft, main_order, responded
 from torsional.studies.claims.excitation import crossing
-from torsional.studies.claims.trucks import Trucks, lumped
+from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM
 
 

@@ -10,11 +10,11 @@ from scipy.linalg import expm
 
 from torsional.laws import Jenkins
 from torsional.solvers.periodic.states import states
+from torsional.studies.answers import at_input, mean_torque
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.answers import at_input, mean_torque
 from torsional.studies.claims.friction import AROUND, STICKING, SWEEP, WASHER, answered, needed, washed
 from torsional.studies.claims.motions import over_speed
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.trucks import Trucks
 from torsional.system import assemble
 from torsional.units import RPM
 

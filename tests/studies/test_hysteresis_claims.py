@@ -11,11 +11,11 @@ from torsional.components import Component, Coupling, Inertia, Shaft
 from torsional.laws import Jenkins
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis
+from torsional.studies.answers import mean_torque
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.answers import mean_torque
 from torsional.studies.claims.arc_losses import PARTLY, WHOLLY, driven, looped
 from torsional.studies.claims.hysteresis import long_arcs, truck_loops
-from torsional.studies.claims.trucks import Trucks, hinged
+from torsional.studies.trucks import Trucks, hinged
 from torsional.system import assemble
 from torsional.units import RPM
 

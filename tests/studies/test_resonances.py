@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from torsional.studies.answers import mode_of, modes
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.answers import mode_of, modes
 from torsional.studies.claims.resonances import swept, tracked, without_damper
-from torsional.studies.claims.trucks import Trucks, sprung
+from torsional.studies.trucks import Trucks, sprung
 
 GEARS = {"12": 11, "10": 9, "8": 7, "4": 3}
 

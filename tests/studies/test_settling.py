@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from torsional.solvers.transient import engine_drive, steady_sweep
+from torsional.studies.answers import mean_torque
 from torsional.studies.claims import Outcome
-from torsional.studies.claims.answers import mean_torque
 from torsional.studies.claims.friction import FAR, WASHER, curve, stepped, washed
 from torsional.studies.claims.idle import Idle, pulsed
 from torsional.studies.claims.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of
 from torsional.studies.claims.settling import STEP, Stepped, order_of, reach_of
-from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 
 

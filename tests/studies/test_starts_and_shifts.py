@@ -12,10 +12,10 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.studies.claims import Outcome
 from torsional.studies.claims.engagement import SETTINGS, STOPS, TIMES, rolling, stopped_at
 from torsional.studies.claims.start_up import DAMPINGS, STARTERS, STIFFNESSES, passed, resonance, sprung
-from torsional.studies.claims.trucks import Trucks, hinged
-from torsional.studies.claims.trucks import sprung as linearised
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.running import run_plan
+from torsional.studies.trucks import Trucks, hinged
+from torsional.studies.trucks import sprung as linearised
 from torsional.system import assemble
 
 

@@ -26,7 +26,7 @@ from torsional.studies.claims.motions import (
 from torsional.studies.claims.stiffness_step import stages, stepped, transition_torque
 from torsional.studies.claims.strongest import Search, crest
 from torsional.studies.claims.subharmonic import quiet_speed
-from torsional.studies.claims.trucks import Trucks, hinged
+from torsional.studies.trucks import Trucks, hinged
 from torsional.units import RPM
 
 

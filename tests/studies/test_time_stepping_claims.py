@@ -15,7 +15,7 @@ from torsional.studies.claims import Outcome
 from torsional.studies.claims.longer_steps import RATTLING, STEPS, Rattle, largest
 from torsional.studies.claims.loose_springs import LooseMotion, loosened
 from torsional.studies.claims.time_stepping import stepped
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.trucks import Trucks
 
 
 @pytest.fixture(scope="module")

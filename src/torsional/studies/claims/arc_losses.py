@@ -14,12 +14,12 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.hysteresis import absorber_ends, hysteresis, model_hysteresis
 from torsional.solvers.transient import transient
-from torsional.studies.claims.answers import floats, main_order
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import floats, main_order
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.hysteresis import long_arcs
-from torsional.studies.claims.trucks import Trucks
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.running import run_plan
+from torsional.studies.trucks import Trucks
 from torsional.system import assemble
 from torsional.units import RPM
 

@@ -11,8 +11,8 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Explorer
 from torsional.solvers.periodic.problem import HarmonicProblem
-from torsional.studies.claims.answers import floats, main_order
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import floats, main_order
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.motions import (
     distinct,
     in_time,
@@ -24,7 +24,7 @@ from torsional.studies.claims.motions import (
     twist_swing,
 )
 from torsional.studies.claims.settling import Stepped, order_of
-from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 
 DAMPINGS = (20.0, 15.0, 10.0, 5.0)

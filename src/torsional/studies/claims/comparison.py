@@ -16,7 +16,7 @@ from torsional.quantities import acceleration, swing
 from torsional.results import labelled
 from torsional.solvers.map import response_map
 from torsional.stamps import GROUND
-from torsional.studies.claims.answers import (
+from torsional.studies.answers import (
     INPUT,
     at_input,
     floats,
@@ -27,8 +27,8 @@ from torsional.studies.claims.answers import (
     speeds,
     sweep,
 )
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, mapped, reached, replaced, sprung, stiffness
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, mapped, reached, replaced, sprung, stiffness
 from torsional.units import RPM
 
 TORQUES = 7

@@ -8,11 +8,11 @@ from torsional.files.scenario import load_scenario
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.results import labelled
-from torsional.studies.claims.answers import floats
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, hinged, replaced, stiffness
+from torsional.studies.answers import floats
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.running import run_plan
+from torsional.studies.trucks import Trucks, hinged, replaced, stiffness
 
 GEARS, SPEED = ("8", "10"), 1400
 SETTINGS = (f"gear={GEARS[1]}", f"speed={SPEED} rpm", "clutch.capacity=5000 Nm", "duration=1.2 s", "torque=0 Nm")

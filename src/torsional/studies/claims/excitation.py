@@ -9,7 +9,7 @@ from torsional.engine.orders import HALF_ORDERS, BoolArray
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, irregularity, order_share, swing
-from torsional.studies.claims.answers import (
+from torsional.studies.answers import (
     curves,
     floats,
     input_shaft,
@@ -19,8 +19,8 @@ from torsional.studies.claims.answers import (
     responded,
     speeds,
 )
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, lumped
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM
 
 CROSSING = 0.5

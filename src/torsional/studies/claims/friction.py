@@ -15,12 +15,12 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
 from torsional.solvers.periodic.states import states
-from torsional.studies.claims.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
-from torsional.studies.claims.base import Figure, Finding, claim, shown
+from torsional.studies.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
+from torsional.studies.base import Figure, Finding, claim, shown
 from torsional.studies.claims.motions import over_speed
 from torsional.studies.claims.settling import Stepped
 from torsional.studies.claims.strongest import crest
-from torsional.studies.claims.trucks import Trucks, joined, replaced
+from torsional.studies.trucks import Trucks, joined, replaced
 from torsional.units import RPM
 
 WASHER = "clutch_friction"

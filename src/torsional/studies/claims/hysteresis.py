@@ -12,9 +12,9 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis, model_hysteresis
-from torsional.studies.claims.answers import floats, rising
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.answers import floats, rising
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks
 from torsional.system import System, assemble
 from torsional.units import RPM
 

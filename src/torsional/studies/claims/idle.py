@@ -19,10 +19,10 @@ from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.stability import stage_bases
 from torsional.solvers.transient import TorqueHistory
-from torsional.studies.claims.answers import floats, main_order
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import floats, main_order
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.settling import Stepped, reach_of, swing_of
-from torsional.studies.claims.trucks import Trucks, hinged, reached, replaced, stiffness, within
+from torsional.studies.trucks import Trucks, hinged, reached, replaced, stiffness, within
 from torsional.system import System, assemble
 
 LASH = 2.0

@@ -14,10 +14,10 @@ from torsional.numerics.explicit.march import explicit_march
 from torsional.numerics.stepping.alpha_method import AlphaMethod
 from torsional.numerics.stepping.marching import Settings, begin, march
 from torsional.solvers.transient.acting import row_of
-from torsional.studies.claims.answers import floats, main_order, sweep
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import floats, main_order, sweep
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.loose_springs import DESIGN, SAMPLING, LooseMotion
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
 STEPS = np.array([0.05, 0.1, 0.2, 0.25, 0.5, 1.0]) * 1e-3

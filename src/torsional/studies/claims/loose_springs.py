@@ -23,7 +23,7 @@ from torsional.numerics.stepping.plan import LEFT, RIGHT, Pairs, dense, mass_mat
 from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, starting
-from torsional.studies.claims.answers import main_order
+from torsional.studies.answers import main_order
 from torsional.system import System, assemble
 from torsional.units import RPM
 

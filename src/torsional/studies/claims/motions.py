@@ -15,7 +15,7 @@ from torsional.solvers.periodic.problem import HarmonicProblem
 from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
-from torsional.studies.claims.answers import input_shaft
+from torsional.studies.answers import input_shaft
 from torsional.system import assemble
 
 Range = tuple[float, float]

@@ -12,9 +12,9 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.harmonic import response
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.claims.answers import INPUT, at_input, curves, floats, lowest, mean_torque, speeds
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, joined, only, replaced, without
+from torsional.studies.answers import INPUT, at_input, curves, floats, lowest, mean_torque, speeds
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, joined, only, replaced, without
 from torsional.units import RPM
 
 

@@ -9,10 +9,10 @@ import numpy as np
 from torsional.components import Coupling, PlanetSpin
 from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
-from torsional.studies.claims.answers import INPUT, at_input, curves, floats, main_order, responded, speeds
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import INPUT, at_input, curves, floats, main_order, responded, speeds
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.power_split import Parts, inertia_at
-from torsional.studies.claims.trucks import Trucks, only, replaced
+from torsional.studies.trucks import Trucks, only, replaced
 from torsional.units import RPM
 
 CRITICAL = 650 * RPM

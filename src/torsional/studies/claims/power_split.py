@@ -15,7 +15,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.claims.answers import (
+from torsional.studies.answers import (
     INPUT,
     at_input,
     curves,
@@ -29,8 +29,8 @@ from torsional.studies.claims.answers import (
     speeds,
     sweep,
 )
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, merged, only, replaced, sprung, stiffness
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, merged, only, replaced, sprung, stiffness
 from torsional.units import RPM
 
 WIDE = np.linspace(300.0, 3000.0, 136) * RPM

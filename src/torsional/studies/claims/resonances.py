@@ -8,7 +8,7 @@ from torsional.components import Coupling, GearPair
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.claims.answers import (
+from torsional.studies.answers import (
     by_gear,
     by_gear_dataset,
     floats,
@@ -18,8 +18,8 @@ from torsional.studies.claims.answers import (
     rising,
     sweep,
 )
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, lumped, replaced, sprung, stiffness
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, lumped, replaced, sprung, stiffness
 from torsional.units import RPM
 
 SOFTEST = 0.5

@@ -14,10 +14,10 @@ from torsional.numerics.arrays import Array
 from torsional.quantities import acceleration, swing
 from torsional.results import labelled
 from torsional.solvers.periodic import model_response
-from torsional.studies.claims.answers import floats, span
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import floats, span
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.stiffness_step import stages, transition_torque
-from torsional.studies.claims.trucks import Trucks, hinged, replaced
+from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 
 TORQUES = np.arange(250.0, 2501.0, 250.0)

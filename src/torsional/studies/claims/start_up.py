@@ -15,14 +15,14 @@ from torsional.results import labelled
 from torsional.solvers.modal import modal
 from torsional.solvers.transient.drives import Governor
 from torsional.solvers.transient.speed_profile import SpeedProfile
-from torsional.studies.claims.answers import falling, floats, main_order, mode_of
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, hinged, replaced, stiffness
-from torsional.studies.claims.trucks import sprung as linearised
+from torsional.studies.answers import falling, floats, main_order, mode_of
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.scenarios.kinds import planned
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.running import run_plan
 from torsional.studies.scenarios.schedule import cylinders
+from torsional.studies.trucks import Trucks, hinged, replaced, stiffness
+from torsional.studies.trucks import sprung as linearised
 from torsional.system import assemble
 from torsional.units import RPM
 

@@ -11,7 +11,7 @@ import numpy as np
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.studies.claims.answers import main_order
+from torsional.studies.answers import main_order
 from torsional.studies.claims.motions import (
     INPUT_ACCELERATION,
     SHAFT,
@@ -23,7 +23,7 @@ from torsional.studies.claims.motions import (
     twist_swing,
 )
 from torsional.studies.claims.strongest import HIGHEST_ORDER, TORQUES, Peak, Search
-from torsional.studies.claims.trucks import hinged, replaced
+from torsional.studies.trucks import hinged, replaced
 
 SOFT, STIFF = 8e3, 24e3
 """Stiffnesses [Nm/rad] that are held while the other one is varied."""

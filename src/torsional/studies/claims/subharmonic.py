@@ -12,8 +12,8 @@ from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
 from torsional.solvers.periodic.branches import Branch
-from torsional.studies.claims.answers import curves, floats, input_shaft, main_order, mode_of, modes, sweep
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.answers import curves, floats, input_shaft, main_order, mode_of, modes, sweep
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.motions import (
     INPUT_ACCELERATION,
     SHAFT,
@@ -32,7 +32,7 @@ from torsional.studies.claims.motions import (
 from torsional.studies.claims.settling import Stepped, order_of
 from torsional.studies.claims.stiffness_step import LIGHT, SOFT, Case, cases, stages, stepped, table, transition_torque
 from torsional.studies.claims.strongest import TORQUES, Peak, Search, onset
-from torsional.studies.claims.trucks import Trucks, reached, sprung, within
+from torsional.studies.trucks import Trucks, reached, sprung, within
 from torsional.system import assemble
 from torsional.units import RPM
 

@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 
 from torsional.numerics.arrays import Array
 from torsional.solvers.transient import transient
-from torsional.studies.claims.base import Figure, Finding, claim
+from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.loose_springs import SAMPLING, SPAN, LooseMotion
-from torsional.studies.claims.trucks import Trucks
+from torsional.studies.trucks import Trucks
 
 CONDITION = (
     "the truck's DMF with straight springs in three channels, their play 0.7° to 1°, shoes and tabs that only push, no "

@@ -13,7 +13,7 @@ from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.claims.answers import (
+from torsional.studies.answers import (
     INPUT,
     at_input,
     curves,
@@ -26,8 +26,8 @@ from torsional.studies.claims.answers import (
     speeds,
     sweep,
 )
-from torsional.studies.claims.base import Figure, Finding, claim
-from torsional.studies.claims.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
+from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
 from torsional.system import assemble
 from torsional.units import RPM
 

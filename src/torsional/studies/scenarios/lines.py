@@ -13,8 +13,8 @@ from torsional.laws import Coulomb
 from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND
-from torsional.studies.claims.trucks import reached
 from torsional.studies.scenarios import sizes
+from torsional.studies.trucks import reached
 
 LINING, LININGS, SYNCHRONISER = "clutch_lining", "clutch_linings", "synchroniser"
 BRAKE, PATCH, ROAD, RESISTANCE = "brake", "contact_patch", "road", "road_load"

@@ -14,12 +14,12 @@ from torsional.solvers.transient.acting import Drive
 from torsional.solvers.transient.drives import Governor, TorqueHistory
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.stamps import Mass
-from torsional.studies.claims.trucks import reached
 from torsional.studies.scenarios import lines, sizes
 from torsional.studies.scenarios.driving import MIDDLE, ROLLING, in_gear, within_stop
 from torsional.studies.scenarios.lines import SYNCHRONISER
 from torsional.studies.scenarios.plan import Phase, Plan, Span
 from torsional.studies.scenarios.schedule import NEVER, HeldBack, Knots, cylinders, heat_for
+from torsional.studies.trucks import reached
 from torsional.units import show
 
 RUBBING, PRESSED = 0.6, 0.1

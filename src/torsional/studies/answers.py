@@ -21,7 +21,7 @@ from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.claims.trucks import reached
+from torsional.studies.trucks import reached
 from torsional.units import RPM
 
 Curves: TypeAlias = Mapping[str, ArrayLike]

@@ -1,0 +1,1 @@
+"""Studies that engineers run by name on their own truck; `torsional.studies.register` finds them."""
