@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from torsional.errors import ModelError
+
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure as Picture
@@ -34,15 +36,15 @@ class Claim:
 
 @dataclass(frozen=True)
 class Finding:
-    """What the models show of a claim: ``reproduced`` or not, under which ``condition`` (load, gear, amplitude), the
-    ``figures`` with their units in brackets, the ``reason`` where something stands against the claim, curves as a
-    ``dataset``.
+    """What the models show of a claim: ``reproduced`` or not (None: they give no answer), under which ``condition``
+    (load, gear, amplitude), the ``figures`` with their units in brackets, the ``reason`` where something stands against
+    the claim, curves as a ``dataset``.
 
     ``proviso``: where the claim holds in one reading of its words or one region alone, which one.  ``measured``:
     figures that the machine has a share in, such as run times; all others are the same in every run.
     """
 
-    reproduced: bool
+    reproduced: bool | None
     condition: str
     figures: Mapping[str, Figure]
     reason: str = ""
@@ -60,7 +62,9 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """Reproduced, reproduced with a condition or not, in words."""
+        """Reproduced, reproduced with a condition or not, or not answered, in words."""
+        if self.finding.reproduced is None:
+            return "not answered"
         if not self.finding.reproduced:
             return "not reproduced"
         return "reproduced with a condition" if self.finding.proviso else "reproduced"
@@ -106,6 +110,13 @@ class Study:
 
     def __call__(self, trucks: Trucks) -> Outcome:
         return Outcome(self.claim, self.question(trucks))
+
+    def tried(self, trucks: Trucks) -> Outcome:
+        """The outcome; one that is not answered, with the reason, where the trucks refuse the question."""
+        try:
+            return self(trucks)
+        except ModelError as error:
+            return Outcome(self.claim, Finding(None, "", {}, str(error)))
 
 
 @dataclass(frozen=True)
