@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import pytest
-from tests.shipped import shipped
 
 from torsional.studies.base import Outcome
 from torsional.studies.register import claims
@@ -14,9 +13,7 @@ from torsional.studies.trucks import Trucks
 
 @pytest.fixture(scope="session")
 def trucks() -> Trucks:
-    files = ["smf", "dmf", "psva", "dmf_tva", "planetary_dmf", "dmf_pendulum", "dmf_two_stage"]
-    files += ["dmf_arc_spring"]
-    return Trucks(*(shipped(f"truck_{name}") for name in files))
+    return Trucks.shipped()
 
 
 class Judged(Mapping[str, Outcome]):

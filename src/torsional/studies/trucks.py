@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from torsional.components import Component, Coupling, Inertia, PlanetSpin, Superposition
@@ -14,6 +14,7 @@ from torsional.laws import Hinges, Law
 from torsional.model import Gear, Model
 from torsional.powertrain import Powertrain
 from torsional.stamps import GROUND, Mass
+from torsional.studies import concepts
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +24,7 @@ class Trucks:
     flywheel of two stages, dual mass flywheel with arc springs in detail.
 
     Landmarks must be set; the parts of an absorber bear the names that `torsional.absorbers` gives them.
+    ``origins``: by concept, whose design it is, in words.
     """
 
     smf: Model
@@ -33,6 +35,37 @@ class Trucks:
     pendulum: Model
     two_stage: Model
     arc_spring: Model
+    origins: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def shipped(cls) -> Trucks:
+        """The representative truck: a tractor of 40 t with a 13-litre six-cylinder diesel.
+
+        >>> Trucks.shipped().smf.name
+        '13-litre truck with a single mass flywheel'
+        """
+        models = concepts.shipped()
+        return cls(**models, origins=dict.fromkeys(models, concepts.SHIPPED))
+
+    @classmethod
+    def of(cls, model: Model) -> Trucks:
+        """A user's truck with each concept: its own absorber as the concept it is, the shipped ones scaled to it.
+
+        The ratio t of the full-load peaks scales torques and stiffnesses, t ((3 · 600 rpm)/(n · idle))² inertias (n the
+        firing order), so that modes meet the firing order at the same multiples of idle; damping ratios stay.
+        ModelError for a model without file, absorber, engine with full-load curve, clutch or gearbox.
+
+        >>> from torsional.files import load_model
+        >>> Trucks.of(load_model("examples/truck_psva.yaml")).origins["psva"]
+        'yours, as it is'
+        """
+        models, told = concepts.on_truck(model)
+        return cls(**models, origins=told)
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """The models by concept."""
+        return {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.name != "origins"}
 
 
 def mapped(model: Model, change: Callable[[dict[str, Component]], dict[str, Component]]) -> Model:
