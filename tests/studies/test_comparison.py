@@ -9,7 +9,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import at_input
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.comparison import behind_clutch, damped
 from torsional.studies.trucks import Trucks, sprung
 from torsional.units import RPM

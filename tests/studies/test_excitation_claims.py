@@ -9,7 +9,7 @@ from torsional.components import Inertia
 from torsional.engine.orders import HALF_ORDERS
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import input_shaft, main_order, responded
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.excitation import crossing
 from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from torsional.laws import Jenkins
 from torsional.solvers.periodic.states import states
 from torsional.studies.answers import at_input, mean_torque
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.friction import AROUND, STICKING, SWEEP, WASHER, answered, needed, washed
 from torsional.studies.claims.motions import over_speed
 from torsional.studies.trucks import Trucks

@@ -12,7 +12,7 @@ from torsional.laws import Jenkins
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis
 from torsional.studies.answers import mean_torque
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.arc_losses import PARTLY, WHOLLY, driven, looped
 from torsional.studies.claims.hysteresis import long_arcs, truck_loops
 from torsional.studies.trucks import Trucks, hinged

@@ -9,7 +9,7 @@ from torsional.absorbers import cancellation_frequency
 from torsional.components import PlanetSpin
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import at_input, mean_torque, responded
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.planetary import at_quotient_one
 from torsional.studies.claims.power_split import Parts, cancelled, damped, paths
 from torsional.studies.trucks import Trucks, merged, only, replaced

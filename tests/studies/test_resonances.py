@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from torsional.studies.answers import mode_of, modes
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.resonances import swept, tracked, without_damper
 from torsional.studies.trucks import Trucks, sprung
 

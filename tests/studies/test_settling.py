@@ -9,7 +9,7 @@ import pytest
 
 from torsional.solvers.transient import engine_drive, steady_sweep
 from torsional.studies.answers import mean_torque
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.friction import FAR, WASHER, curve, stepped, washed
 from torsional.studies.claims.idle import Idle, pulsed
 from torsional.studies.claims.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of

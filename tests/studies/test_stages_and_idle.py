@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from torsional.quantities import acceleration, swing
 from torsional.studies.answers import responded
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.idle import Idle
 from torsional.studies.claims.stages import SPEEDS, designs, row
 from torsional.studies.trucks import Trucks, hinged, sprung

@@ -9,7 +9,7 @@ import pytest
 
 from torsional.files.scenario import load_scenario
 from torsional.solvers.harmonic import harmonic_response
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.engagement import SETTINGS, STOPS, TIMES, rolling, stopped_at
 from torsional.studies.claims.start_up import DAMPINGS, STARTERS, STIFFNESSES, passed, resonance, sprung
 from torsional.studies.scenarios.kinds import planned

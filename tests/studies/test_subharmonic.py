@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.motions import (
     SPRING,
     TWIST,

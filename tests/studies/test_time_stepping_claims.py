@@ -11,7 +11,7 @@ from torsional.errors import ModelError
 from torsional.numerics.explicit.rates import fill_rates, places
 from torsional.numerics.stepping.alpha_method import AlphaMethod
 from torsional.numerics.stepping.marching import Settings, begin, march
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.longer_steps import RATTLING, STEPS, Rattle, largest
 from torsional.studies.claims.loose_springs import LooseMotion, loosened
 from torsional.studies.claims.time_stepping import stepped

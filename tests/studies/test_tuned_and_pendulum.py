@@ -7,7 +7,7 @@ import pytest
 
 from torsional.absorbers import CentrifugalPendulum
 from torsional.studies.answers import at_input
-from torsional.studies.claims import Outcome
+from torsional.studies.base import Outcome
 from torsional.studies.claims.pendulum import on_single, quiet_order
 from torsional.studies.claims.tuned import added, flywheel_alone, order_speeds, sized, tuning
 from torsional.studies.trucks import Trucks, only, replaced, without
