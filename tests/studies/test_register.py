@@ -15,7 +15,7 @@ IDS = [
     *(f"D{n}" for n in range(1, 5)),
     *(f"E{n}" for n in range(1, 3)),
     *("F3", "F4"),
-    *(f"G{n}" for n in range(1, 4)),
+    *(f"G{n}" for n in range(1, 5)),
 ]
 NOT_REPRODUCED = {"A1", "A13", "F4"}
 WITH_A_CONDITION = {"E2", "G2"}
