@@ -99,10 +99,14 @@ def downsized(model: Model, cylinders: int) -> Model:
     own = engine.layout.cylinders
     if not 1 <= cylinders < own:
         allowed = f"1 to {own - 1}" if own > 1 else "an engine of more than one cylinder"
-        raise ModelError("a smaller engine has fewer cylinders", where="cylinders", found=str(cylinders), allowed=allowed)
+        raise ModelError(
+            "a smaller engine has fewer cylinders", where="cylinders", found=str(cylinders), allowed=allowed
+        )
     if engine.layout.throw_count < own:
         remedy = "ask for deactivated cylinders alone"
-        raise ModelError("down-sizing is worked out for engines in line", where="engine.layout", found="V", remedy=remedy)
+        raise ModelError(
+            "down-sizing is worked out for engines in line", where="engine.layout", found="V", remedy=remedy
+        )
     curve = engine.full_load
     share = cylinders / own
     smaller = dataclasses.replace(

@@ -31,8 +31,8 @@ from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
 MECHANISM = (
-    "with every second cylinder off the others fire at twice the distance, each with more than twice the work, so that "
-    "modes which the firing order met below the range lie in it; a cylinder that is shut is a gas spring, which repeats "
+    "with every second cylinder off the others fire at twice the distance, each with over twice the work, so that "
+    "modes which the firing order met below the range lie in it; a cylinder that is shut is a gas spring, repeats "
     "itself every turn and has no part in that order, while one that breathes compresses once a cycle and cancels the "
     "compression of the others in it"
 )
