@@ -244,7 +244,8 @@ def compared(
 
 def strongest(data: xr.Dataset) -> xr.DataArray:
     """The order with most of the vibration's mean square over the map, of every concept and engine."""
-    return data.order[data.energy.argmax("order")]
+    found: xr.DataArray = data.order[data.energy.argmax("order")]
+    return found
 
 
 def drawn(data: xr.Dataset) -> Figure:
