@@ -77,6 +77,7 @@ _TABLE = (
         "irregularity", "δ", "-", "cyclic irregularity of speed (peak-to-peak over mean)", "number", "-", 0.0, 1.0
     ),
     Quantity("efficiency", "η", "-", "power out over power in", "number", "%", 0.0, 1.0),
+    Quantity("relative_difference", "ε", "-", "difference over the value itself", "number", "%", 0.0, 10.0),
     Quantity("ratio", "r", "-", "ratio of like quantities", "number", "-"),
     Quantity("number", "n", "-", "plain number", "number", "-"),
 )

@@ -10,7 +10,7 @@ import pytest
 
 from torsional.studies.answers import mode_of, modes
 from torsional.studies.base import Outcome
-from torsional.studies.claims.resonances import swept, tracked, without_damper
+from torsional.studies.claims.resonances import stiffened, tracked, without_damper
 from torsional.studies.trucks import Trucks, sprung
 
 GEARS = {"12": 11, "10": 9, "8": 7, "4": 3}
@@ -36,7 +36,7 @@ def test_a4_stays_inside(outcomes: dict[str, Outcome], trucks: Trucks) -> None:
     soft = outcomes["A4"].finding.figures["gears inside at the softest"]
     assert isinstance(soft, tuple) and "1" in soft and "12" not in soft
     # Rayleigh's quotient: a mode rises with a spring by its share of the elastic energy, d ln f / d ln k = p/2
-    low, high = swept(trucks.smf, np.array([1 / 1.001, 1.001]), "12")
+    low, high = stiffened(trucks.smf, np.array([1 / 1.001, 1.001]), "12")
     share = figure(outcomes, "A2", "energy in the clutch [-]")[0]
     assert np.log(high / low) / np.log(1.001**2) == pytest.approx(share / 2, rel=1e-4)
 

@@ -15,6 +15,7 @@ from torsional.plots.scenario import plot_scenario
 from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
 from torsional.plots.springs import plot_characteristic, plot_travel
 from torsional.plots.style import panels, save_png, save_svg
+from torsional.plots.sweeps import plot_sweep
 from torsional.plots.transient import plot_transient
 
 __all__ = [
@@ -41,6 +42,7 @@ __all__ = [
     "plot_scenario",
     "plot_signals",
     "plot_solutions",
+    "plot_sweep",
     "plot_transient",
     "plot_travel",
     "save_png",

@@ -1,6 +1,8 @@
-"""Claims about what the engine does to the line, and how it must be modelled (A1, A13, A15)."""
+"""Claims about what the engine does to the line, and how it must be modelled (A1, A15)."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -8,25 +10,22 @@ import xarray as xr
 from torsional.engine.orders import HALF_ORDERS, BoolArray
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.quantities import acceleration, irregularity, order_share, swing
+from torsional.quantities import irregularity, order_share
 from torsional.studies.answers import (
-    curves,
     floats,
     input_shaft,
     main_order,
-    mode_of,
     modes,
     responded,
     speeds,
 )
 from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.swept import Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM
 
 CROSSING = 0.5
 """The firing order is near a zero crossing where the engine's own is below this share of its median over speed."""
-NEAR = 0.1
-"""Near a resonance: within this share of its speed."""
 STEP = 25 * RPM
 
 
@@ -54,104 +53,75 @@ def share(model: Model, speed: Array) -> Array:
     "the flywheel.",
     "at full load the firing order has more than 80 % of the mean square of the torque oscillation in the gearbox "
     "input shaft at every speed of the range away from zero crossings of the order (single mass flywheel, top gear)",
+    varies="engine speed over the operating range in steps of 25 rpm, at full load in top gear; beside the single mass "
+    "flywheel a rigid crankshaft and the dual mass flywheel",
+    leading="lowest share away from crossings [-]",
 )
 def a1(trucks: Trucks) -> Finding:
     model, speed = trucks.smf, speeds(trucks.smf, STEP)
-    away = ~crossing(model, speed)
+    away, order = ~crossing(model, speed), main_order(model)
     flexible, rigid, double = (share(m, speed) for m in (model, lumped(model), trucks.dmf))
-    power = abs(_orders_at(model, speed)) ** 2
-    short = away & (flexible <= 0.8)
+    torque = abs(_orders_at(model, speed))
+    own, other = torque.sel(order=order).values, torque.drop_sel(order=order).max("order").values
     figures: dict[str, Figure] = {
         "lowest share away from crossings [-]": float(flexible[away].min()),
         "part of the range above 80 % [%]": 100 * float((flexible[away] > 0.8).mean()),
-        "share of the whole range's mean square [-]": float(power.sel(order=main_order(model)).sum() / power.sum()),
+        "share of the whole range's mean square [-]": float((own**2).sum() / (torque**2).sum()),
+        "firing order over the next largest order, lowest [-]": float((own / other)[away].min()),
         "rigid crankshaft: lowest share [-]": float(rigid[away].min()),
         "DMF: part of the range above 80 % [%]": 100 * float((double[away] > 0.8).mean()),
     }
-    reason = _other_orders(model, speed[short], power.values[short]) if short.any() else ""
-    data = curves("A1", speed, "energy_share", smf=flexible, dmf=double, rigid_crankshaft=rigid)
-    return Finding(not short.any(), "full load, top gear, orders 0.5–12", figures, reason, data)
-
-
-def _other_orders(model: Model, speed: Array, power: Array) -> str:
-    others = [place for place, n in enumerate(HALF_ORDERS) if n != main_order(model)]
-    strongest = HALF_ORDERS[others][np.argsort(power[:, others].sum(axis=0))[::-1][:2]]
-    named = " and ".join(f"{n:g}" for n in sorted(strongest))
-    return (
-        f"from {speed[0] / RPM:.0f} rpm the line isolates the firing order so well that orders {named} show, which "
-        "meet higher modes there (what all other orders hold of the whole range's mean square is in the figures)"
-    )
-
-
-def differences(model: Model, speed: Array) -> tuple[Array, Array]:
-    """A lumped engine's input acceleration over that of the flexible crankshaft, less one: firing order, swing."""
-    load = model.full_load(speed)
-    pair = [_accelerations(m, speed, load) for m in (model, lumped(model))]
-    order = [np.abs(a.sel(order=main_order(model)).values) for a in pair]
-    cycle = [swing(a).values for a in pair]
-    return order[1] / order[0] - 1, cycle[1] / cycle[0] - 1
-
-
-def _accelerations(model: Model, speed: Array, torque: Array) -> xr.DataArray:
-    return acceleration(responded(model, speed, torque, orders=HALF_ORDERS).angle.sel(node=model.landmarks.input))
-
-
-def resonance(model: Model) -> float:
-    """Order speed of the clutch mode in top gear [rad/s]."""
-    found = modes(model)
-    return float(found.order_speed[mode_of(found, model.landmarks.clutch)])
-
-
-def _first_crank_mode(model: Model) -> float:
-    """Order speed [rad/s] of the lowest mode with most of its elastic energy in the engine."""
-    rigid = {stamp.name for stamp in lumped(model).powertrain().stamps}
-    found = modes(model)
-    engine = found.elastic_share.sel(element=[name for name in found.element.values if name not in rigid])
-    within = found.order_speed.values[engine.sum("element").values > 0.5]
-    return float(within.min(initial=np.inf))
-
-
-@claim(
-    "A13",
-    "4.1",
-    "Near resonance the model of the engine, flexible crankshaft or one lumped inertia, significantly changes the "
-    "result behind the flywheel.",
-    "firing order's acceleration at the gearbox input: the two differ by more than 10 % within ±10 % of the "
-    "resonance's speed and by less than 5 % away from it",
-)
-def a13(trucks: Trucks) -> Finding:
-    figures: dict[str, Figure] = {}
-    good = True
-    told: dict[str, Array] = {}
-    for name, model in (("SMF", trucks.smf), ("DMF", trucks.dmf)):
-        speed = speeds(model, STEP)
-        order, cycle = differences(model, speed)
-        near = np.abs(speed / resonance(model) - 1) < NEAR
-        figures |= _sides(name, speed, near, order, cycle)
-        figures[f"{name}: first crankshaft mode over clutch mode [-]"] = _first_crank_mode(model) / resonance(model)
-        good &= bool(np.abs(order[near]).max() > 0.1 and np.abs(order[~near]).max() < 0.05)
-        told |= {f"{name.lower()}_order": order, f"{name.lower()}_swing": cycle}
-    reason = (
-        "the crankshaft's first mode lies far above the clutch mode, so near that resonance the engine moves as one "
-        "body; the difference grows with the square of frequency instead. In the swing over a cycle, which holds the "
-        "orders that only a flexible crankshaft passes on, it is large near the higher resonances"
-    )
-    data = curves("A13", speed, "ratio", **told)
-    return Finding(good, "full load, top gear, half peak-to-peak", figures, "" if good else reason, data)
-
-
-def _sides(name: str, speed: Array, near: BoolArray, order: Array, cycle: Array) -> dict[str, Figure]:
-    worst = int(np.abs(cycle).argmax())
-    return {
-        f"{name}: order, near [%]": 100 * float(np.abs(order[near]).max()),
-        f"{name}: order, away, largest [%]": 100 * float(np.abs(order[~near]).max()),
-        f"{name}: order, away, within 5 % up to [rpm]": float(
-            speed[~near & (np.abs(order) > 0.05)].min(initial=np.inf) / RPM
-        ),
-        f"{name}: swing, near [%]": 100 * float(np.abs(cycle[near]).max()),
-        f"{name}: swing, largest [%]": 100 * float(np.abs(cycle[worst])),
-        f"{name}: swing, largest at [rpm]": float(speed[worst] / RPM),
+    short = away & (flexible <= 0.8)
+    reason = _other_orders(model, speed, torque, short, rigid) if short.any() else ""
+    told = {"smf": (flexible, "SMF"), "rigid": (rigid, "SMF, rigid crankshaft"), "dmf": (double, "DMF")}
+    limit: dict[str, Any] = {"limit": 0.8, "limit_words": "criterion: above 80 % (SMF)"}
+    panel = "firing order's share of the mean square, off its zero crossings"
+    curves = {
+        name: Curve(np.where(away, values, np.nan), "energy_share", words, panel, **(limit if name == "smf" else {}))
+        for name, (values, words) in told.items()
     }
+    curves |= _torques(torque, order)
+    return Finding(
+        not short.any(), "full load, top gear, orders 0.5–12", figures, reason, swept("A1", over_speed(speed), curves)
+    )
+
+
+def _torques(torque: xr.DataArray, order: float) -> dict[str, Curve]:
+    """The orders of the input shaft's torque that matter."""
+    panel = "SMF: orders of the torque in the input shaft"
+    chosen = [order, *(n for n in (1.5, 4.5, 6.0) if n != order)]
+    return {
+        f"order_{n:g}".replace(".", "_"): Curve(
+            torque.sel(order=n).values, "torque", f"order {n:g}", panel, "0-peak", scale="log"
+        )
+        for n in chosen
+    }
+
+
+def _other_orders(model: Model, speed: Array, torque: xr.DataArray, short: BoolArray, rigid: Array) -> str:
+    """Why the firing order is short of its share at some speeds."""
+    main = main_order(model)
+    own, others = torque.sel(order=main), torque.drop_sel(order=main)
+    strongest = others.order.values[np.argsort((others.values[short] ** 2).sum(axis=0))[::-1][:2]]
+    place = int(np.flatnonzero(short)[(own.values / others.max("order").values)[short].argmin()])
+    loudest = others.isel(speed=place)
+    n = float(loudest.order.values[int(loudest.values.argmax())])
+    frequency = n * speed[place] / (2 * np.pi)
+    near = modes(model).frequency.values
+    near = near[np.abs(near / frequency - 1).argmin()]
+    return (
+        f"from {speed[short][0] / RPM:.0f} rpm orders {strongest.min():g} and {strongest.max():g} show. There the line "
+        f"isolates the firing order so well that {own.values[place]:.0f} Nm are left of it at "
+        f"{speed[place] / RPM:.0f} rpm ({own.values.max():.0f} Nm at its resonance), while order {n:g} has "
+        f"{frequency:.0f} Hz, meets a mode at {near:.0f} Hz and brings {float(loudest.max()):.0f} Nm. Orders that "
+        f"are no multiples of {main:g} leave a flexible crankshaft alone: with a rigid one the cylinders cancel them, "
+        f"and the share never falls below {100 * rigid[~crossing(model, speed)].min():.0f} %. In torque the claim "
+        "stands: away from its crossings the firing order is the largest of all at every speed"
+        if (own.values > others.max("order").values)[~crossing(model, speed)].all()
+        else f"from {speed[short][0] / RPM:.0f} rpm orders {strongest.min():g} and {strongest.max():g} show, and order "
+        f"{n:g} is larger than the firing order at {speed[place] / RPM:.0f} rpm: at {frequency:.0f} Hz it meets a "
+        f"mode at {near:.0f} Hz"
+    )
 
 
 @claim(
@@ -159,22 +129,31 @@ def _sides(name: str, speed: Array, near: BoolArray, order: Array, cycle: Array)
     "3.3",
     "The crankshaft's irregularity as a solid body is larger with a dual mass flywheel.",
     "cyclic irregularity of the crankshaft at idle under full load: dual mass above single mass flywheel",
+    varies="engine speed over the operating range in steps of 25 rpm, at full load in top gear; judged at idle",
+    leading="solid body, DMF over SMF [-]",
 )
 def a15(trucks: Trucks) -> Finding:
-    single, double = _irregularity(trucks.smf), _irregularity(trucks.dmf)
+    speed = speeds(trucks.smf, STEP)
+    single, double = (
+        _irregularity(model, np.array([model.operation.idle]))[:, 0] for model in (trucks.smf, trucks.dmf)
+    )
     figures: dict[str, Figure] = {
         "SMF, solid body and flywheel [%]": floats(100 * single),
         "DMF, solid body and primary [%]": floats(100 * double),
         "ratio [-]": floats(double / single),
+        "solid body, DMF over SMF [-]": float(double[0] / single[0]),
+    }
+    curves = {
+        name.lower(): Curve(_irregularity(model, speed)[0], "irregularity", f"{name}, crankshaft as a solid body")
+        for name, model in (("SMF", trucks.smf), ("DMF", trucks.dmf))
     }
     condition = "idle, full load, top gear, peak-to-peak over mean, orders 0.5–12"
-    return Finding(bool((double > single).all()), condition, figures)
+    return Finding(bool((double > single).all()), condition, figures, dataset=swept("A15", over_speed(speed), curves))
 
 
-def _irregularity(model: Model) -> Array:
-    """Irregularity of the throws' mean motion and of the crankshaft landmark at idle under full load."""
-    idle = np.array([model.operation.idle])
-    angle = responded(model, idle, model.full_load(idle), orders=HALF_ORDERS).angle
+def _irregularity(model: Model, speed: Array) -> Array:
+    """Irregularity (2, speeds) of the throws' mean motion and of the crankshaft landmark under full load."""
+    angle = responded(model, speed, model.full_load(speed), orders=HALF_ORDERS).angle
     body = angle.sel(node=list(model.landmarks.throws)).mean("node")
     both = [body, angle.sel(node=model.landmarks.crankshaft)]
-    return np.array([float(irregularity(motion).values[0]) for motion in both])
+    return np.array([irregularity(motion).values for motion in both])

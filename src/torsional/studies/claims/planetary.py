@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from torsional.components import Coupling, PlanetSpin
 from torsional.engine.orders import HALF_ORDERS
 from torsional.model import Model
-from torsional.studies.answers import INPUT, at_input, curves, floats, main_order, responded, speeds
+from torsional.numerics.arrays import Array
+from torsional.studies.answers import INPUT, at_input, floats, main_order, responded, speeds
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.power_split import Parts, inertia_at
+from torsional.studies.swept import Along, Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, only, replaced
 from torsional.units import RPM
 
@@ -25,12 +28,14 @@ CRITICAL = 650 * RPM
     "A planetary dual mass flywheel is a power split absorber of quotient 1; cancelling low takes very large planets.",
     "angles at the gearbox input agree to 1e-10 at quotient 1, all half orders; planet inertia that cancels at 650 rpm "
     "above the power split absorber's",
+    varies="cancellation speed asked for, 500 to 1200 rpm in steps of 25; quotient 1 and the power split absorber's",
+    leading="ratio [-]",
 )
 def c4(trucks: Trucks) -> Finding:
     p, n = Parts.of(trucks.psva), main_order(trucks.psva)
     worst = _largest_difference(trucks)
-    alone, split = (p.planets_for(n * CRITICAL, quotient) for quotient in (1.0, p.r))
-    same = p.planets_for(p.cancellation(), 1.0)
+    alone, split = (float(p.planets_for(n * CRITICAL, quotient)) for quotient in (1.0, p.r))
+    same = float(p.planets_for(p.cancellation(), 1.0))
     figures: dict[str, Figure] = {
         "largest relative difference [-]": worst,
         "planet inertia for 650 rpm, planetary [kgm²]": alone,
@@ -40,7 +45,25 @@ def c4(trucks: Trucks) -> Finding:
         "over the shipped power split absorber's [-]": same / p.J3,
     }
     condition = "orders 0.5–12, operating range, top gear; the same springs, damping and inertias"
-    return Finding(worst < 1e-10 and alone > split, condition, figures)
+    return Finding(worst < 1e-10 and alone > split, condition, figures, dataset=_asked(p, n))
+
+
+def _positive(values: Array) -> Array:
+    """What can be built."""
+    return np.where(values > 0, values, np.nan)
+
+
+def _asked(p: Parts, order: float) -> xr.Dataset:
+    """Planet inertia needed over the cancellation speed asked for."""
+    speed, panel = np.arange(500.0, 1201.0, 25.0) * RPM, "inertia of all planets needed"
+    told = {"planetary": (1.0, "planetary DMF, quotient 1"), "power_split": (p.r, f"power split, quotient {p.r:.3g}")}
+    curves = {
+        name: Curve(_positive(p.planets_for(order * speed, quotient)), "inertia", words, panel)
+        for name, (quotient, words) in told.items()
+    }
+    own = np.where(np.arange(speed.size) == np.abs(speed - p.cancellation() / order).argmin(), p.J3, np.nan)
+    curves["shipped"] = Curve(own, "inertia", "power split as in the model", panel, points=True)
+    return swept("C4", Along("speed", speed, "speed", "cancellation speed asked for"), curves)
 
 
 def _largest_difference(trucks: Trucks) -> float:
@@ -69,6 +92,8 @@ def at_quotient_one(trucks: Trucks) -> tuple[Model, Model]:
     "Planets whose inertia can be switched give two cancellation speeds and a wider useful range.",
     "amplitude below half of the plain dual mass flywheel's over a larger part of the range than with either inertia "
     "alone, and two minima of the ratio",
+    varies="engine speed over the operating range in steps of 10 rpm; each planet inertia alone, the better of both",
+    leading="useful part of the range: better of both over the larger part alone [-]",
 )
 def c5(trucks: Trucks) -> Finding:
     model, speed = trucks.planetary, speeds(trucks.planetary)
@@ -89,7 +114,13 @@ def c5(trucks: Trucks) -> Finding:
         "useful part of the range: smaller alone [%]": useful[1],
         "useful part of the range: better of both [%]": useful[2],
         "useful part of the range: switched as shipped [%]": useful[3],
+        "useful part of the range: better of both over the larger part alone [-]": useful[2] / (max(useful[:2]) or 1.0),
     }
-    data = curves("C5", speed, "ratio", larger=ratio[0], smaller=ratio[1], envelope=both, switched=switched)
+    panel, limit = "amplitude over that of the plain DMF", {"limit": 0.5, "limit_words": "useful: below one half"}
+    told = {"larger": (ratio[0], "larger inertia alone"), "smaller": (ratio[1], "smaller inertia alone")}
+    told |= {"switched": (switched, "switched as in the model")}
+    curves = {name: Curve(v, "ratio", words, panel, scale="log") for name, (v, words) in told.items()}
+    curves["switched"] = Curve(switched, "ratio", told["switched"][1], panel, scale="log", **limit)  # type: ignore[arg-type]
+    data = swept("C5", over_speed(speed), curves, model)
     good = useful[2] > max(useful[:2]) and minima[0] < minima[1]
     return Finding(good, INPUT, figures, dataset=data)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from torsional.absorbers import cancellation_frequency
 from torsional.components import Inertia, PlanetSpin, Superposition
@@ -18,7 +19,6 @@ from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import (
     INPUT,
     at_input,
-    curves,
     falling,
     floats,
     lowest,
@@ -27,9 +27,9 @@ from torsional.studies.answers import (
     responded,
     rising,
     speeds,
-    sweep,
 )
 from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.swept import Along, Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, merged, only, replaced, sprung, stiffness
 from torsional.units import RPM
 
@@ -67,9 +67,9 @@ class Parts:
         """Angular frequency [rad/s] at which the undamped absorber's output stands still."""
         return cancellation_frequency(self.k, self.J2, self.J3, self.g, self.r)
 
-    def planets_for(self, omega: float, quotient: float) -> float:
+    def planets_for(self, omega: ArrayLike, quotient: float) -> Array:
         """Planet inertia [kgm²] that moves the cancellation to ω: J3 = (k/ω² − J2 (1 − r)) / (g (g − r))."""
-        return (self.k / omega**2 - self.J2 * (1 - quotient)) / (self.g * (self.g - quotient))
+        return (self.k / np.asarray(omega) ** 2 - self.J2 * (1 - quotient)) / (self.g * (self.g - quotient))
 
 
 def inertia_at(model: Model, node: str) -> float:
@@ -102,18 +102,24 @@ def cancelled(model: Model) -> float:
 
 
 def paths(model: Model, speed: float) -> tuple[complex, complex, complex]:
-    """Torques on the output [Nm] by springs and by gears, and the engine's torque, complex 0-peak, at one speed.
+    """`paths_over` at one speed."""
+    return paths_over(model, np.array([speed]))[0]
+
+
+def paths_over(model: Model, speed: Array) -> list[tuple[complex, complex, complex]]:
+    """Torques on the output [Nm] by springs and by gears, and the engine's torque, complex 0-peak, at each speed.
 
     Work on body 2 gives the output's torque λ = T_s/r − (J2 θ̈2 + g J3 θ̈3)/r: the springs' part, and the part that the
     gears pass on beside it.
     """
     parts, n = Parts.of(model), main_order(model)
-    found = responded(model, np.array([speed])).isel(speed=0, order=0)
-    first, second, _ = (complex(found.angle.sel(node=node)) for node in parts.nodes)
+    found = responded(model, speed).isel(order=0)
+    first, second, _ = (found.angle.sel(node=node).values for node in parts.nodes)
     third = (1 - parts.g) * first + parts.g * second
     inertial = -((n * speed) ** 2) * (parts.J2 * second + parts.g * parts.J3 * third)
-    engine = model.running_engine.harmonics(speed, mean_torque(model), [n]).sum()
-    return complex(found.torque.sel(element=parts.springs)) / parts.r, -inertial / parts.r, complex(engine)
+    engine = model.running_engine.harmonics(speed, mean_torque(model) + 0 * speed, [n]).sum(axis=-2)[:, 0]
+    spring = found.torque.sel(element=parts.springs).values / parts.r
+    return [tuple(map(complex, row)) for row in zip(spring, -inertial / parts.r, engine, strict=True)]  # type: ignore[misc]
 
 
 def degrees(value: complex, reference: complex) -> float:
@@ -127,6 +133,8 @@ def degrees(value: complex, reference: complex) -> float:
     "A power split absorber cancels vibration near one speed: its spring path turns by about 180°, its gear path not.",
     "anti-resonance found in the range; there the spring path's torque on the output is within 30° of opposite to the "
     "engine's, the gear path's within 30° of it; amplitude below that of the corresponding dual mass flywheel",
+    varies="engine speed over the operating range in steps of 10 rpm",
+    leading="amplitude over corresponding DMF there [-]",
 )
 def c1(trucks: Trucks) -> Finding:
     model, speed = trucks.psva, speeds(trucks.psva)
@@ -145,8 +153,29 @@ def c1(trucks: Trucks) -> Finding:
     }
     low, high = model.operation.speed
     good = low < at < high and degrees(spring, engine) > 150 and degrees(gear, engine) < 30 and ratio < 1
-    data = curves("C1", speed, "acceleration", psva=own, dmf=plain)
-    return Finding(good, INPUT, figures, dataset=data)
+    return Finding(good, INPUT, figures, dataset=swept("C1", over_speed(speed), _paths_drawn(model, speed, own, plain)))
+
+
+BETTER = "criterion: below 1 at the cancellation"
+
+
+def _paths_drawn(model: Model, speed: Array, own: Array, plain: Array) -> dict[str, Curve]:
+    """Amplitudes with and without the gears, and the phases of both paths against the engine."""
+    told = [[degrees(path, engine) for path in (spring, gear)] for spring, gear, engine in paths_over(model, speed)]
+    spring, gear = np.radians(told).T
+    panel, phase = "gearbox input, acceleration", "phase of the torque on the output against the engine's"
+    half = "half peak-to-peak"
+    ratio = Curve(own / plain, "ratio", panel="amplitude over the DMF's", limit=1.0, limit_words=BETTER, scale="log")
+    limits = {"spring": (5 * np.pi / 6, "criterion: above 150°"), "gear": (np.pi / 6, "criterion: below 30°")}
+    curves = {
+        "psva": Curve(own, "acceleration", "power split absorber", panel, half, scale="log"),
+        "dmf": Curve(plain, "acceleration", "corresponding DMF", panel, half, scale="log"),
+        "ratio": ratio,
+    }
+    for name, path in (("spring", spring), ("gear", gear)):
+        at, words = limits[name]
+        curves[name] = Curve(path, "angle", f"{name} path", phase, limit=at, limit_words=f"{name} path, {words}")
+    return curves
 
 
 @claim(
@@ -154,6 +183,8 @@ def c1(trucks: Trucks) -> Finding:
     "2.2.2, 6.1",
     "More inertia and less stiffness move the cancellation to lower speed.",
     "cancellation falls strictly with secondary and planet inertia and rises strictly with stiffness, each over 4:1",
+    varies="inertia of secondary body, planets and output, and stiffness, each from half to twice in five steps",
+    leading="least change from step to step, as said [%]",
 )
 def c2(trucks: Trucks) -> Finding:
     model, factors = trucks.psva, np.geomspace(0.5, 2.0, 5)
@@ -167,9 +198,22 @@ def c2(trucks: Trucks) -> Finding:
     rpm = {name: np.array([cancelled(m) for m in variants]) / RPM for name, variants in bodies.items()}
     figures: dict[str, Figure] = {f"over {name} × 0.5 to 2 [rpm]": floats(found) for name, found in rpm.items()}
     good = falling(rpm["secondary inertia"]) and falling(rpm["planet inertia"]) and rising(rpm["stiffness"])
-    told = {name.replace(" ", "_"): (found * RPM, "speed") for name, found in rpm.items()}
+    signs = {"secondary inertia": -1, "planet inertia": -1, "stiffness": 1}
+    least = min(float((sign * np.diff(np.log(rpm[name]))).min()) for name, sign in signs.items())
+    figures["least change from step to step, as said [%]"] = 100 * least
+    panel = "speed at which the output stands still"
+    told = {name.replace(" ", "_"): Curve(found * RPM, "speed", name, panel) for name, found in rpm.items()}
     condition = "speed at which the output of the undamped absorber stands still, top gear"
-    return Finding(good, condition, figures, dataset=sweep("C2", "factor", factors, "ratio", **told))
+    data = swept("C2", Along("factor", factors, "ratio", "parameter over the model's", "log"), told)
+    return Finding(good, condition, figures, dataset=data)
+
+
+READINGS = (
+    "§2.2.5 says that a lower quotient lowers the cancellation speed, §6.1 that a higher one does: they divide the two "
+    "gear ratios the other way round. With r = (θ4 − θ1)/(θ2 − θ1), up to 1, it is the lower r, as in §2.2.5; 1/r, "
+    "from 1 on, is the quotient of §6.1, and there it is the higher one. Both mean the same: the further apart the two "
+    "ratios, the lower the cancellation and the more vibration at high speed"
+)
 
 
 @claim(
@@ -178,6 +222,8 @@ def c2(trucks: Trucks) -> Finding:
     "Moving the quotient of both gear ratios away from 1 lowers the cancellation and raises vibration at high speed.",
     "with r = (θ4 − θ1)/(θ2 − θ1) from 0.85 down to 0.5 (its inverse 1/r from 1.18 up to 2) the cancellation found "
     "falls and the amplitude at speeds a quarter above the highest cancellation rises, both strictly",
+    varies="quotient r of the gear ratios from 0.85 to 0.5 in six steps (1/r from 1.18 to 2)",
+    leading="cancellation at the lowest over that at the highest r [-]",
 )
 def c3(trucks: Trucks) -> Finding:
     p, quotient = Parts.of(trucks.psva), np.linspace(0.85, 0.5, 6)
@@ -192,10 +238,20 @@ def c3(trucks: Trucks) -> Finding:
         "cancellation [rpm]": floats(at / RPM),
         "speeds above [rpm]": float(speed[0] / RPM),
         "mean amplitude there [rad/s²]": floats(table.mean(axis=1)),
+        "cancellation at the lowest over that at the highest r [-]": float(at[-1] / at[0]),
     }
-    told = {"cancellation": (at, "speed"), "amplitude": (table.mean(axis=1), "acceleration")}
-    data = sweep("C3", "gear_quotient", quotient, "ratio", **told)
-    return Finding(falling(at) and rising(table), INPUT, figures, dataset=data)
+    told = {
+        "cancellation": Curve(at, "speed", panel="speed at which the output stands still"),
+        "amplitude": Curve(
+            table.mean(axis=1),
+            "acceleration",
+            panel=f"gearbox input, mean from {speed[0] / RPM:.0f} rpm on, acceleration",
+            amplitude="half peak-to-peak",
+        ),
+    }
+    along = Along("gear_quotient", quotient, "ratio", "quotient r, as in §2.2.5", inverse="quotient 1/r, as in §6.1")
+    data = swept("C3", along, told)
+    return Finding(falling(at) and rising(table), INPUT, figures, READINGS, data)
 
 
 @claim(
@@ -204,6 +260,8 @@ def c3(trucks: Trucks) -> Finding:
     "A power split absorber beats the corresponding dual mass flywheel significantly for a low level of damping only.",
     "lowest ratio to that flywheel, both with the same damping, rises strictly with damping, from below 0.1 without "
     "any to above 0.8 with much",
+    varies="damping beside the springs from 0 to 160 Nms/rad in seven steps, of both alike",
+    leading="damping at which the ratio is one half [Nms/rad]",
 )
 def c6(trucks: Trucks) -> Finding:
     model, damping = trucks.psva, np.array([0.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0])
@@ -218,5 +276,11 @@ def c6(trucks: Trucks) -> Finding:
         "damping at which the ratio is one half [Nms/rad]": half,
         "part of the range better than the DMF [%]": floats(100 * (ratio < 1).mean(axis=1)),
     }
-    data = sweep("C6", "damping", damping, "damping", lowest_ratio=(depth, "ratio"))
+    curves = {
+        "lowest_ratio": Curve(
+            depth, "ratio", panel="lowest amplitude over the corresponding DMF's", limit=1.0, limit_words="no advantage"
+        ),
+        "better": Curve((ratio < 1).mean(axis=1), "efficiency", panel="part of the range better than the DMF"),
+    }
+    data = swept("C6", Along("damping", damping, "damping", "damping beside the springs"), curves)
     return Finding(rising(depth) and depth[0] < 0.1 and depth[-1] > 0.8, INPUT, figures, dataset=data)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
+import xarray as xr
 
 from torsional.components import Coupling, GearPair
 from torsional.model import Model
@@ -10,15 +14,14 @@ from torsional.numerics.arrays import Array
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import (
     by_gear,
-    by_gear_dataset,
     floats,
     mean_torque,
     mode_of,
     modes,
     rising,
-    sweep,
 )
 from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.swept import Along, Curve, over_gears, swept
 from torsional.studies.trucks import Trucks, lumped, replaced, sprung, stiffness
 from torsional.units import RPM
 
@@ -43,7 +46,7 @@ def tracked(model: Model, gear: str, place: int) -> float:
     return float(modes(model, gear).order_speed[place]) / RPM
 
 
-def swept(model: Model, factors: Array, gear: str) -> Array:
+def stiffened(model: Model, factors: Array, gear: str) -> Array:
     """Order speed [rpm] of the clutch mode over factors on the clutch damper's stiffness."""
     place = mode_of(modes(model, gear), model.landmarks.clutch)
     own = stiffness(model, model.landmarks.clutch)
@@ -69,6 +72,8 @@ def inside(model: Model, rpm: Array) -> tuple[str, ...]:
     "2.1",
     "With a single mass flywheel a torsional resonance meets the third order at low engine speed.",
     "in top gear an elastic mode with its order speed in 500–900 rpm, its largest twist in clutch or driveline",
+    varies="the connections of the line in top gear, in each mode whose order speed lies in 500–900 rpm",
+    leading="clutch mode's order speed [rpm]",
 )
 def a2(trucks: Trucks) -> Finding:
     gear, found = trucks.smf.top_gear, modes(trucks.smf)
@@ -80,9 +85,23 @@ def a2(trucks: Trucks) -> Finding:
         "order speeds [rpm]": floats(rpm[places]),
         "largest twist in": tuple(largest),
         "energy in the clutch [-]": floats(found.elastic_share.sel(element=trucks.smf.landmarks.clutch)[places]),
+        "clutch mode's order speed [rpm]": float(rpm[mode_of(found, trucks.smf.landmarks.clutch)]),
     }
     good = bool(largest) and set(largest) <= line
-    return Finding(good, f"gear {gear}; {MODES}", figures, dataset=found)
+    return Finding(good, f"gear {gear}; {MODES}", figures, dataset=_mode_pictures(trucks.smf, gear, places.tolist()))
+
+
+def _mode_pictures(model: Model, gear: str, places: Sequence[int]) -> xr.Dataset | None:
+    """Where the springs twist and store energy in some modes; None without a mode."""
+    found, curves, names = modes(model, gear), dict[str, Curve](), list[str]()
+    for place in places:
+        twist, words = twists(model, gear, place), f"mode with order speed {found.order_speed[place] / RPM:.0f} rpm"
+        names = list(twist)
+        energy = found.elastic_share.isel(mode=place).sel(element=names).values
+        panel = "twist referred to engine speed, over the largest"
+        curves[f"twist_{place}"] = Curve(list(twist.values()), "ratio", words, panel)
+        curves[f"energy_{place}"] = Curve(energy, "energy_share", words, "share of the mode's elastic energy")
+    return swept("A2", Along("element", names, "", "connection of the line"), curves) if names else None
 
 
 @claim(
@@ -90,12 +109,26 @@ def a2(trucks: Trucks) -> Finding:
     "2.1",
     "That resonance depends on the gear and on the driveline.",
     "order speed of the clutch mode over all gears reported; more than 5 % between top gear and a low gear",
+    varies="all gears",
+    leading="spread against top gear [%]",
 )
 def a3(trucks: Trucks) -> Finding:
     rpm, share, _ = by_gear(trucks.smf, trucks.smf.landmarks.clutch)
     spread = float(np.max(np.abs(rpm / rpm[-1] - 1)))
     figures: dict[str, Figure] = {"order speed by gear [rpm]": floats(rpm), "spread against top gear [%]": 100 * spread}
-    data = by_gear_dataset("A3", trucks.smf, order_speed=(rpm * RPM, "speed"), clutch_share=(share, "energy_share"))
+    against = "difference from the top gear"
+    curves = {
+        "order_speed": Curve(rpm * RPM, "speed", panel="clutch mode's order speed"),
+        "difference": Curve(
+            np.abs(rpm / rpm[-1] - 1),
+            "relative_difference",
+            panel=against,
+            limit=0.05,
+            limit_words="criterion: above 5 % in some gear",
+        ),
+        "clutch_share": Curve(share, "energy_share", panel="energy of the mode in the clutch damper"),
+    }
+    data = swept("A3", over_gears(trucks.smf), curves, trucks.smf)
     return Finding(spread > 0.05, MODES, figures, dataset=data)
 
 
@@ -104,10 +137,12 @@ def a3(trucks: Trucks) -> Finding:
     "2.1",
     "A softer clutch damper lowers that resonance, yet within feasible stiffness it stays in range for some gears.",
     "order speed monotone over a 4:1 sweep of the damper's stiffness; at the softest feasible a gear is still inside",
+    varies="stiffness of the clutch damper from half to twice the model's in five steps, all gears",
+    leading="number of gears inside at the softest [-]",
 )
 def a4(trucks: Trucks) -> Finding:
     model, factors = trucks.smf, np.geomspace(SOFTEST, 4 * SOFTEST, 5)
-    table = np.array([swept(model, factors, gear) for gear in model.gear_names])
+    table = np.array([stiffened(model, factors, gear) for gear in model.gear_names])
     soft = inside(model, table[:, 0])
     own = stiffness(model, model.landmarks.clutch)
     figures: dict[str, Figure] = {
@@ -115,8 +150,15 @@ def a4(trucks: Trucks) -> Finding:
         "top gear's order speed [rpm]": floats(table[-1]),
         "first gear's order speed [rpm]": floats(table[0]),
         "gears inside at the softest": soft,
+        "number of gears inside at the softest [-]": float(len(soft)),
     }
-    data = sweep("A4", "stiffness", own * factors, "stiffness", top_gear=(table[-1] * RPM, "speed"))
+    chosen = dict.fromkeys((0, len(table) // 2, len(table) - 1))
+    panel, names = "clutch mode's order speed", model.gear_names
+    curves = {f"gear_{names[i]}": Curve(table[i] * RPM, "speed", f"gear {names[i]}", panel) for i in chosen}
+    count = [float(len(inside(model, column))) for column in table.T]
+    told = {"limit": 1.0, "limit_words": "criterion: at least one"}
+    curves["inside"] = Curve(count, "number", panel="gears with the mode in range", **told)  # type: ignore[arg-type]
+    data = swept("A4", Along("stiffness", own * factors, "stiffness", "stiffness of the clutch damper"), curves, model)
     return Finding(rising(table.T) and bool(soft), f"all gears; {MODES}", figures, dataset=data)
 
 
@@ -125,6 +167,8 @@ def a4(trucks: Trucks) -> Finding:
     "2.2.1, 6.1",
     "The mode in which the two flywheels of a dual mass flywheel move against each other lies well below idle.",
     "in every gear its order speed is below 0.8 of idle, more than half of its elastic energy in the springs",
+    varies="all gears",
+    leading="highest order speed over 0.8 of idle [-]",
 )
 def a6(trucks: Trucks) -> Finding:
     model = trucks.dmf
@@ -134,8 +178,15 @@ def a6(trucks: Trucks) -> Finding:
         "order speed by gear [rpm]": floats(rpm),
         "energy in the DMF by gear [-]": floats(share),
         "highest over idle [-]": float(rpm.max() / idle),
+        "highest order speed over 0.8 of idle [-]": float(rpm.max() / (0.8 * idle)),
     }
-    data = by_gear_dataset("A6", model, order_speed=(rpm * RPM, "speed"), spring_share=(share, "energy_share"))
+    low: dict[str, Any] = {"limit": 0.8 * idle * RPM, "limit_words": "criterion: below 0.8 of idle"}
+    half: dict[str, Any] = {"limit": 0.5, "limit_words": "criterion: above 50 %"}
+    curves = {
+        "order_speed": Curve(rpm * RPM, "speed", panel="DMF mode's order speed", **low),
+        "spring_share": Curve(share, "energy_share", panel="energy of the mode in the DMF", **half),
+    }
+    data = swept("A6", over_gears(model), curves, model)
     return Finding(bool((rpm < 0.8 * idle).all() and (share > 0.5).all()), f"all gears; {MODES}", figures, dataset=data)
 
 
@@ -144,16 +195,26 @@ def a6(trucks: Trucks) -> Finding:
     "6.1",
     "The clutch mode of the truck with a dual mass flywheel meets the third order in the operating range.",
     "in every gear its order speed is inside the range, the largest share of its elastic energy in the clutch damper",
+    varies="all gears",
+    leading="least distance from an end of the range, negative outside [rpm]",
 )
 def a7(trucks: Trucks) -> Finding:
     model = trucks.dmf
     rpm, share, dominant = by_gear(model, model.landmarks.clutch)
     good = len(inside(model, rpm)) == len(rpm) and set(dominant) == {model.landmarks.clutch}
+    low, high = (end / RPM for end in model.operation.speed)
     figures: dict[str, Figure] = {
         "order speed by gear [rpm]": floats(rpm),
         "energy in the clutch by gear [-]": floats(share),
+        "least distance from an end of the range, negative outside [rpm]": float(
+            min(rpm.min() - low, high - rpm.max())
+        ),
     }
-    data = by_gear_dataset("A7", model, order_speed=(rpm * RPM, "speed"), clutch_share=(share, "energy_share"))
+    curves = {
+        "order_speed": Curve(rpm * RPM, "speed", panel="clutch mode's order speed"),
+        "clutch_share": Curve(share, "energy_share", panel="energy of the mode in the clutch damper"),
+    }
+    data = swept("A7", over_gears(model), curves, model)
     return Finding(good, f"all gears; {MODES}", figures, dataset=data)
 
 
@@ -163,10 +224,12 @@ def a7(trucks: Trucks) -> Finding:
     "A stiffer clutch damper raises the clutch mode but hardly out of range; without it a like mode stays in range.",
     "monotone over a 1:8 sweep; with a rigid clutch the mode of the same number is still inside in the upper half of "
     "the gears",
+    varies="stiffness of the clutch damper × 1 to 8 in four steps, and a rigid clutch; all gears",
+    leading="rigid clutch: highest order speed in the upper half of the gears [rpm]",
 )
 def a8(trucks: Trucks) -> Finding:
     model, factors = trucks.dmf, np.geomspace(1.0, 8.0, 4)
-    table = np.array([swept(model, factors, gear) for gear in model.gear_names])
+    table = np.array([stiffened(model, factors, gear) for gear in model.gear_names])
     places = [mode_of(modes(model, gear), model.landmarks.clutch) for gear in model.gear_names]
     bare = without_damper(model)
     rigid = np.array([tracked(bare, gear, place) for gear, place in zip(model.gear_names, places, strict=True)])
@@ -176,11 +239,16 @@ def a8(trucks: Trucks) -> Finding:
         "rigid clutch, by gear [rpm]": floats(rigid),
         "gears inside with a rigid clutch": kept,
         "top gear's weakest part": twisted(bare, model.top_gear, places[-1]),
+        "rigid clutch: highest order speed in the upper half of the gears [rpm]": float(rigid[len(rigid) // 2 :].max()),
     }
     good = rising(table.T) and set(model.gear_names[len(model.gear_names) // 2 :]) <= set(kept)
     low = tuple(gear for gear in model.gear_names if gear not in kept)
     reason = f"out of range in gears {', '.join(low)} with a rigid clutch" if low else ""
-    data = by_gear_dataset("A8", model, order_speed=(rigid * RPM, "speed"))
+    told = {f"times_{f:.0f}": (row, f"clutch damper × {f:.0f}") for f, row in zip(factors, table.T, strict=True)}
+    told |= {"rigid": (rigid, "rigid clutch")}
+    panel = "order speed of the clutch mode"
+    curves = {name: Curve(row * RPM, "speed", words, panel) for name, (row, words) in told.items()}
+    data = swept("A8", over_gears(model), curves, model)
     return Finding(good, f"all gears; {MODES}", figures, reason, data)
 
 

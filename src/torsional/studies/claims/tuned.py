@@ -16,7 +16,6 @@ from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import (
     INPUT,
     at_input,
-    curves,
     falling,
     floats,
     lowest,
@@ -24,9 +23,9 @@ from torsional.studies.answers import (
     mean_torque,
     rising,
     speeds,
-    sweep,
 )
 from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.swept import Along, Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
 from torsional.system import assemble
 from torsional.units import RPM
@@ -37,6 +36,8 @@ INERTIAS = np.geomspace(0.02, 6.0, 24)
 MODES = "undamped modes about 60 % of the peak torque, top gear, as speeds at which the firing order meets them"
 
 
+HALF = "half peak-to-peak"
+AT_TUNING = "criterion: below one half at the tuning speed"
 SECONDARY = (
     "on the secondary flywheel the added mode starts just below the tuning too, since clutch and gearbox hang on that "
     "flywheel; there it stays close, and the resonance above moves up. With an open clutch the added one lies above"
@@ -91,6 +92,8 @@ def added(model: Model, resonances: Callable[[Model], Array] = order_speeds) -> 
     "A tuned absorber reduces vibration near its tuning frequency and adds one resonance.",
     "one undamped mode more than without it; with the absorber undamped the gearbox input's amplitude is lowest at the "
     "tuning speed (to 0.1 %), and as shipped it is below half of that without the absorber",
+    varies="engine speed over the operating range in steps of 10 rpm; with and without the absorber",
+    leading="ratio to no absorber there, as shipped [-]",
 )
 def d1(trucks: Trucks) -> Finding:
     model, speed = trucks.tva, speeds(trucks.tva)
@@ -108,7 +111,13 @@ def d1(trucks: Trucks) -> Finding:
         "ratio to no absorber there, as shipped [-]": there,
         "added resonance [rpm]": added(model) / RPM,
     }
-    data = curves("D1", speed, "acceleration", with_absorber=at_input(model, speed), without=at_input(plain, speed))
+    panel, own, other = "gearbox input, acceleration", at_input(model, speed), at_input(plain, speed)
+    curves = {
+        "with_absorber": Curve(own, "acceleration", "with the absorber", panel, HALF, scale="log"),
+        "without": Curve(other, "acceleration", "without", panel, HALF, scale="log"),
+        "ratio": Curve(own / other, "ratio", "with over without", "ratio", limit=0.5, limit_words=AT_TUNING),
+    }
+    data = swept("D1", over_speed(speed), curves, model)
     good = more == 1 and abs(found / at - 1) < 1e-3 and there < 0.5
     return Finding(good, INPUT, figures, dataset=data)
 
@@ -118,6 +127,8 @@ def d1(trucks: Trucks) -> Finding:
     "2.2.3, 6.1",
     "With the absorber on the intermediate flange the added resonance lies below the tuning frequency.",
     "for every absorber inertia of a sweep; shown beside the absorber on the secondary flywheel",
+    varies="inertia of the absorber from 0.02 to 6 kgm² in 24 steps, tuned alike; on the flange, on the secondary",
+    leading="on the flange: highest added resonance over the tuning [-]",
 )
 def d2(trucks: Trucks) -> Finding:
     model, at = trucks.tva, tuning(trucks.tva)
@@ -131,14 +142,19 @@ def d2(trucks: Trucks) -> Finding:
         "inertias [kgm²]": floats(INERTIAS[[0, -1]]),
         "on the flange: added resonance [rpm]": floats(flange[[0, -1]] / RPM),
         "on the secondary: added resonance [rpm]": floats(secondary[[0, -1]] / RPM),
+        "on the flange: highest added resonance over the tuning [-]": float(flange.max() / at),
         "shipped inertia, flange: resonances about the tuning [rpm]": _about(order_speeds(beside[0]), at),
         "shipped inertia, secondary: resonances about the tuning [rpm]": _about(order_speeds(beside[1]), at),
         "no absorber: resonances about the tuning [rpm]": _about(order_speeds(without(model, RING, SPRING)), at),
         "open clutch, flange: added resonance [rpm]": lone[0] / RPM,
         "open clutch, secondary: added resonance [rpm]": lone[1] / RPM,
     }
-    told = {"flange": (flange, "speed"), "secondary": (secondary, "speed")}
-    data = sweep("D2", "inertia", INERTIAS, "inertia", **told)
+    panel, limit = "order speed of the added resonance", {"limit": at, "limit_words": "tuning: criterion below it"}
+    curves = {
+        "flange": Curve(flange, "speed", "absorber on the flange", panel, **limit),  # type: ignore[arg-type]
+        "secondary": Curve(secondary, "speed", "absorber on the secondary flywheel", panel),
+    }
+    data = swept("D2", SIZES, curves, model)
     reason = SECONDARY if (secondary < at).all() and lone[1] > at else ""
     return Finding(bool((flange < at).all()), MODES, figures, reason, data)
 
@@ -155,6 +171,8 @@ def _about(resonances: Array, at: float) -> tuple[float, ...]:
     "A large separation of added resonance and tuning needs a much larger absorber.",
     "separation rises strictly with the absorber's inertia; to bring the resonance below 0.8 of idle the absorber must "
     "have more inertia than the whole dual mass flywheel without it",
+    varies="inertia of the absorber from 0.02 to 6 kgm² in 24 steps, its tuning kept",
+    leading="inertia that brings it below 0.8 of idle, over the whole flywheel's [-]",
 )
 def d3(trucks: Trucks) -> Finding:
     model, at = trucks.tva, tuning(trucks.tva)
@@ -164,15 +182,34 @@ def d3(trucks: Trucks) -> Finding:
     last: Any = model.components[model.landmarks.springs[-1]]
     first: Any = model.components[model.landmarks.springs[0]]
     bodies: list[Any] = [model.components[node] for node in (first.b, first.a, last.a)]
-    whole = sum(body.inertia for body in bodies)
+    whole, own = sum(body.inertia for body in bodies), model.components[RING].inertia  # type: ignore[attr-defined]
     figures: dict[str, Figure] = {
         "separations of the tuning speed [%]": floats(100 * wanted),
         "absorber inertia needed [kgm²]": floats(needed),
         "dual mass flywheel without absorber [kgm²]": whole,
         "shipped: separation [%]": 100 * (1 - added(model) / at),
+        "inertia that brings it below 0.8 of idle, over the whole flywheel's [-]": float(needed[-1] / whole),
     }
-    data = sweep("D3", "inertia", INERTIAS, "inertia", separation=(apart, "ratio"))
+    told = {"limit": float(wanted[-1]), "limit_words": "added resonance at 0.8 of idle"}
+    panel = "added resonance below the tuning speed"
+    curves = {
+        "separation": Curve(apart, "relative_difference", "all tuned alike", panel, **told),  # type: ignore[arg-type]
+        "shipped": _single(own, 1 - added(model) / at, f"as in the model, {own:.2g} kgm²", panel),
+        "whole": _single(whole, float(np.interp(whole, INERTIAS, apart)), WHOLE, panel),
+    }
+    data = swept("D3", SIZES, curves, model)
     return Finding(rising(apart) and bool(needed[-1] > whole), MODES, figures, dataset=data)
+
+
+SIZES = Along("inertia", INERTIAS, "inertia", "inertia of the absorber", "log")
+WHOLE = "as much inertia as the whole dual mass flywheel"
+
+
+def _single(inertia: float, value: float, words: str, panel: str) -> Curve:
+    """A value told at the swept inertia that is nearest to one."""
+    at = int(np.abs(np.log(INERTIAS / inertia)).argmin())
+    values = np.where(np.arange(INERTIAS.size) == at, value, np.nan)
+    return Curve(values, "relative_difference", words, panel, points=True)
 
 
 @claim(
@@ -181,6 +218,8 @@ def d3(trucks: Trucks) -> Finding:
     "More damping lowers the added resonance's excitation and spoils the reduction.",
     "over a sweep of the absorber's damping the largest amplitude around the added resonance falls strictly and the "
     "amplitude at the tuning speed rises strictly",
+    varies="damping of the absorber from 0.5 to 16 Nms/rad in six steps",
+    leading="amplitude at the tuning speed, most over least damping [-]",
 )
 def d4(trucks: Trucks) -> Finding:
     model, at = trucks.tva, tuning(trucks.tva)
@@ -195,7 +234,15 @@ def d4(trucks: Trucks) -> Finding:
         "largest amplitude around the added resonance [rad/s²]": floats(peak),
         "amplitude at the tuning speed [rad/s²]": floats(notch),
         "without absorber at the tuning speed [rad/s²]": plain,
+        "amplitude at the tuning speed, most over least damping [-]": float(notch[-1] / notch[0]),
     }
-    told = {"peak": (peak, "acceleration"), "notch": (notch, "acceleration")}
-    data = sweep("D4", "damping", damping, "damping", **told)
+    panel, limit = (
+        "gearbox input, acceleration",
+        {"limit": plain, "limit_words": "at the tuning speed without absorber"},
+    )
+    curves = {
+        "peak": Curve(peak, "acceleration", "largest around the added resonance", panel, HALF),
+        "notch": Curve(notch, "acceleration", "at the tuning speed", panel, HALF, **limit),  # type: ignore[arg-type]
+    }
+    data = swept("D4", Along("damping", damping, "damping", "damping of the absorber", "log"), curves)
     return Finding(falling(peak) and rising(notch), INPUT, figures, dataset=data)
