@@ -13,7 +13,7 @@ from torsional.solvers.periodic.states import states
 from torsional.studies.answers import at_input, mean_torque
 from torsional.studies.base import Outcome
 from torsional.studies.claims.friction import AROUND, STICKING, SWEEP, WASHER, answered, needed, washed
-from torsional.studies.claims.motions import over_speed
+from torsional.studies.motions import over_speed
 from torsional.studies.trucks import Trucks
 from torsional.system import assemble
 from torsional.units import RPM

@@ -12,8 +12,8 @@ from torsional.studies.answers import mean_torque
 from torsional.studies.base import Outcome
 from torsional.studies.claims.friction import FAR, WASHER, curve, stepped, washed
 from torsional.studies.claims.idle import Idle, pulsed
-from torsional.studies.claims.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of
-from torsional.studies.claims.settling import STEP, Stepped, order_of, reach_of
+from torsional.studies.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of
+from torsional.studies.settling import STEP, Stepped, order_of, reach_of
 from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from torsional.studies.base import Outcome
-from torsional.studies.claims.motions import (
+from torsional.studies.claims.subharmonic import quiet_speed
+from torsional.studies.motions import (
     SPRING,
     TWIST,
     amplitudes,
@@ -23,9 +24,8 @@ from torsional.studies.claims.motions import (
     state_of,
     twist_orders,
 )
-from torsional.studies.claims.stiffness_step import stages, stepped, transition_torque
-from torsional.studies.claims.strongest import Search, crest
-from torsional.studies.claims.subharmonic import quiet_speed
+from torsional.studies.stiffness_step import stages, stepped, transition_torque
+from torsional.studies.strongest import Search, crest
 from torsional.studies.trucks import Trucks, hinged
 from torsional.units import RPM
 

@@ -13,7 +13,7 @@ from torsional.solvers.periodic.branches import Explorer
 from torsional.solvers.periodic.problem import HarmonicProblem
 from torsional.studies.answers import floats, main_order
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.motions import (
+from torsional.studies.motions import (
     distinct,
     in_time,
     over_torque,
@@ -23,7 +23,7 @@ from torsional.studies.claims.motions import (
     twist_orders,
     twist_swing,
 )
-from torsional.studies.claims.settling import Stepped, order_of
+from torsional.studies.settling import Stepped, order_of
 from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 

@@ -2,35 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
-from scipy.optimize import brentq
 
-from torsional.components import Coupling
-from torsional.errors import ModelError
-from torsional.laws import Jenkins
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.solvers.periodic.branches import Branch
-from torsional.solvers.periodic.states import states
 from torsional.studies.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
 from torsional.studies.base import Figure, Finding, claim, shown
-from torsional.studies.claims.motions import over_speed
-from torsional.studies.claims.settling import Stepped
-from torsional.studies.claims.strongest import crest
-from torsional.studies.trucks import Trucks, joined, replaced
+from torsional.studies.friction import ORDERS, Curve, answered, least_torque, washed
+from torsional.studies.settling import Stepped
+from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
-WASHER = "clutch_friction"
-STICKING = 1e5
-"""Stiffness of a washer that sticks [Nm/rad], four times the clutch damper's."""
 SWEEP = np.array([10.0, 30.0, 60.0, 90.0, 120.0, 150.0])
 """Friction torques [Nm] of the sweep, the range of trucks' clutches and a little below it."""
 FAR = 1500 * RPM
-ORDERS = 9.0
-"""Highest order: the third and its next multiples."""
 LIGHT = 0.2
 """Viscous damping left in a clutch that relies on its washer, over the shipped one."""
 AROUND = (600 * RPM, 1000 * RPM)
@@ -63,68 +48,6 @@ UNREACHED = (
     "with little viscous damping in the clutch no washer of up to 600 Nm brings the single mass flywheel's resonance "
     "under the lower limits: with more friction the washer sticks and moves the resonance up instead"
 )
-
-
-def washed(model: Model, torque: float, viscous: float = 1.0) -> Model:
-    """A copy with a friction washer [Nm] beside the clutch damper, whose viscous damping is multiplied."""
-    name = model.landmarks.clutch
-    clutch: Any = model.components[name]
-    model = replaced(model, name, damping=viscous * clutch.damping)
-    return model if not torque else joined(model, **{WASHER: Coupling(clutch.a, clutch.b, Jenkins(torque, STICKING))})
-
-
-@dataclass(frozen=True)
-class Curve:
-    """Amplitude [rad/s²] of the firing order at the input and the washer's mean power [W] over speed [rad/s]."""
-
-    speed: Array
-    amplitude: Array
-    power: Array
-
-    @property
-    def peak(self) -> tuple[float, float]:
-        """The largest amplitude and its speed, between the points by a parabola."""
-        top = int(np.clip(self.amplitude.argmax(), 1, self.speed.size - 2))
-        three = slice(top - 1, top + 2)
-        at = crest(self.speed[three], self.amplitude[three])
-        at = float(np.clip(at, *self.speed[[top - 1, top + 1]]))
-        return float(np.polyval(np.polyfit(self.speed[three] - at, self.amplitude[three], 2), 0.0)), at
-
-    def at(self, speed: float, values: Array) -> float:
-        """A value between the points."""
-        return float(np.interp(speed, self.speed, values))
-
-
-def curve(model: Model, branch: Branch) -> Curve:
-    """Amplitude and power along a branch."""
-    told, system, speed = states(branch.problem, branch.scaled), branch.problem.setting.split.system, branch.values
-    place = round(main_order(model) / branch.base_order)
-    input_angle = told.angle[:, place, system.node_index(model.landmarks.input)]
-    washer = system.connections.names.index(WASHER)
-    omega = np.multiply.outer(speed, branch.base_order * np.arange(told.twist.shape[1]))
-    rate = 1j * omega * told.twist[:, :, washer]
-    power = 0.5 * (told.torque[:, :, washer] * rate.conj()).real.sum(axis=1)
-    return Curve(speed, np.abs(input_angle) * (main_order(model) * speed) ** 2, power)
-
-
-def answered(model: Model, speed: tuple[float, float]) -> Curve:
-    """The answer over a range of speed [rad/s], pieced together of all branches by rising speed.
-
-    A washer that sticks holds any mean torque, so that branches may end where it comes to stick; the vibration is the
-    same on the one that goes on.  Raises ModelError where no branch reaches an end of the range.
-    """
-    explorer = over_speed(model, speed, mean_torque(model), depth=0, highest_order=ORDERS)
-    parts = [curve(model, branch) for branch in explorer.branches]
-    at = np.concatenate([part.speed for part in parts])
-    rise = np.argsort(at)
-    if at[rise[0]] > speed[0] * 1.001 or at[rise[-1]] < speed[1] * 0.999:
-        found = f"{at.min() / RPM:.0f} to {at.max() / RPM:.0f} rpm"
-        raise ModelError("the motions do not span the range", where="speed", found=found)
-    return Curve(
-        at[rise],
-        np.concatenate([part.amplitude for part in parts])[rise],
-        np.concatenate([part.power for part in parts])[rise],
-    )
 
 
 def stepped(model: Model, speed: float) -> tuple[float, float]:
@@ -189,17 +112,8 @@ def _as_said(told: Array) -> bool:
 
 
 def needed(model: Model, limit: float, viscous: float) -> float:
-    """The friction torque [Nm] that brings the largest amplitude about the resonance under a limit [rad/s²].
-
-    0 where none is needed, infinity where the largest that is tried does not.
-    """
-
-    def excess(torque: float) -> float:
-        return answered(washed(model, torque, viscous), AROUND).peak[0] - limit
-
-    if excess(LEAST) <= 0:
-        return 0.0
-    return float(brentq(excess, LEAST, MOST, xtol=0.05)) if excess(MOST) < 0 else float("inf")
+    """The friction torque [Nm] that brings the largest amplitude about the resonance under a limit [rad/s²]."""
+    return least_torque(lambda torque: answered(washed(model, torque, viscous), AROUND).peak[0] - limit, LEAST, MOST)
 
 
 @claim(

@@ -21,7 +21,7 @@ from torsional.solvers.periodic.stability import stage_bases
 from torsional.solvers.transient import TorqueHistory
 from torsional.studies.answers import floats, main_order
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.settling import Stepped, reach_of, swing_of
+from torsional.studies.settling import Stepped, reach_of, swing_of
 from torsional.studies.trucks import Trucks, hinged, reached, replaced, stiffness, within
 from torsional.system import System, assemble
 

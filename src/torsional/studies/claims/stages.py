@@ -16,7 +16,7 @@ from torsional.results import labelled
 from torsional.solvers.periodic import model_response
 from torsional.studies.answers import floats, span
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.stiffness_step import stages, transition_torque
+from torsional.studies.stiffness_step import stages, transition_torque
 from torsional.studies.trucks import Trucks, hinged, replaced
 from torsional.units import RPM
 

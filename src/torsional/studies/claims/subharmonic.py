@@ -14,7 +14,7 @@ from torsional.solvers.modal import natural_frequencies
 from torsional.solvers.periodic.branches import Branch
 from torsional.studies.answers import curves, floats, input_shaft, main_order, mode_of, modes, sweep
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.motions import (
+from torsional.studies.motions import (
     INPUT_ACCELERATION,
     SHAFT,
     SPRING,
@@ -29,9 +29,9 @@ from torsional.studies.claims.motions import (
     state_of,
     twist_orders,
 )
-from torsional.studies.claims.settling import Stepped, order_of
-from torsional.studies.claims.stiffness_step import LIGHT, SOFT, Case, cases, stages, stepped, table, transition_torque
-from torsional.studies.claims.strongest import TORQUES, Peak, Search, onset
+from torsional.studies.settling import Stepped, order_of
+from torsional.studies.stiffness_step import LIGHT, SOFT, Case, cases, stages, stepped, table, transition_torque
+from torsional.studies.strongest import TORQUES, Peak, Search, onset
 from torsional.studies.trucks import Trucks, reached, sprung, within
 from torsional.system import assemble
 from torsional.units import RPM

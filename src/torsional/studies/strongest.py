@@ -12,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
-from torsional.studies.claims.motions import amplitudes, doubled, doubling_margin, over_torque
+from torsional.studies.motions import amplitudes, doubled, doubling_margin, over_torque
 from torsional.units import RPM
 
 TORQUES = (700.0, 2300.0)

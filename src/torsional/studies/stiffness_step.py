@@ -12,7 +12,7 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.answers import main_order
-from torsional.studies.claims.motions import (
+from torsional.studies.motions import (
     INPUT_ACCELERATION,
     SHAFT,
     SPRING,
@@ -22,7 +22,7 @@ from torsional.studies.claims.motions import (
     over_torque,
     twist_swing,
 )
-from torsional.studies.claims.strongest import HIGHEST_ORDER, TORQUES, Peak, Search
+from torsional.studies.strongest import HIGHEST_ORDER, TORQUES, Peak, Search
 from torsional.studies.trucks import hinged, replaced
 
 SOFT, STIFF = 8e3, 24e3
