@@ -11,7 +11,8 @@ from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import at_input, mean_torque, responded
 from torsional.studies.base import Outcome
 from torsional.studies.claims.planetary import at_quotient_one
-from torsional.studies.claims.power_split import Parts, cancelled, damped, paths
+from torsional.studies.claims.power_split import paths
+from torsional.studies.power_split import Parts, cancelled, damped
 from torsional.studies.trucks import Trucks, merged, only, replaced
 from torsional.units import RPM
 

@@ -10,8 +10,9 @@ import pytest
 from torsional.solvers.transient import engine_drive, steady_sweep
 from torsional.studies.answers import mean_torque
 from torsional.studies.base import Outcome
-from torsional.studies.claims.friction import FAR, WASHER, curve, stepped, washed
+from torsional.studies.claims.friction import FAR, stepped
 from torsional.studies.claims.idle import Idle, pulsed
+from torsional.studies.friction import WASHER, curve, washed
 from torsional.studies.motions import at_value, doubled, in_time, over_speed, over_torque, rest_of
 from torsional.studies.settling import STEP, Stepped, order_of, reach_of
 from torsional.studies.trucks import Trucks, hinged, replaced

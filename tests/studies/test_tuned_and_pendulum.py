@@ -9,8 +9,8 @@ from torsional.absorbers import CentrifugalPendulum
 from torsional.studies.answers import at_input
 from torsional.studies.base import Outcome
 from torsional.studies.claims.pendulum import on_single, quiet_order
-from torsional.studies.claims.tuned import added, flywheel_alone, order_speeds, sized, tuning
 from torsional.studies.trucks import Trucks, only, replaced, without
+from torsional.studies.tuned_absorber import added, flywheel_alone, order_speeds, sized, tuning
 from torsional.units import RPM
 
 

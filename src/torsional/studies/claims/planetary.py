@@ -13,7 +13,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.answers import INPUT, at_input, floats, main_order, responded, speeds
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.power_split import Parts, inertia_at
+from torsional.studies.power_split import Parts, inertia_at
 from torsional.studies.swept import Along, Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, only, replaced
 from torsional.units import RPM

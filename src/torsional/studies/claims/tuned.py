@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from torsional.absorbers import tuned_stiffness
-from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.powertrain import Powertrain
-from torsional.solvers.modal import natural_frequencies
-from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import (
     INPUT,
     at_input,
     falling,
     floats,
     lowest,
-    main_order,
-    mean_torque,
     rising,
     speeds,
 )
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.swept import Along, Curve, over_speed, swept
-from torsional.studies.trucks import Trucks, reached, replaced, sprung, stiffness, within, without
-from torsional.system import assemble
+from torsional.studies.trucks import Trucks, replaced, without
+from torsional.studies.tuned_absorber import RING, SPRING, added, flywheel_alone, order_speeds, sized, tuning
 from torsional.units import RPM
 
-RING, SPRING = "tva", "tva_spring"
 INERTIAS = np.geomspace(0.02, 6.0, 24)
 """Absorber inertias of the sweeps [kgm²], all tuned to the same speed."""
 MODES = "undamped modes about 60 % of the peak torque, top gear, as speeds at which the firing order meets them"
@@ -42,48 +33,6 @@ SECONDARY = (
     "on the secondary flywheel the added mode starts just below the tuning too, since clutch and gearbox hang on that "
     "flywheel; there it stays close, and the resonance above moves up. With an open clutch the added one lies above"
 )
-
-
-def tuning(model: Model) -> float:
-    """Engine speed [rad/s] at which the firing order meets the absorber's own frequency."""
-    ring: Any = model.components[RING]
-    spring: Any = model.components[SPRING]
-    return float(np.sqrt(spring.stiffness / ring.inertia)) / main_order(model)
-
-
-def sized(model: Model, inertia: float, carrier: str = "") -> Model:
-    """A copy whose absorber has another inertia, the same tuning and, if named, another carrier."""
-    k = tuned_stiffness(float(inertia), tuning(model) * main_order(model))
-    fields: dict[str, Any] = {"stiffness": k, **({"a": carrier} if carrier else {})}
-    return replaced(replaced(model, RING, inertia=float(inertia)), SPRING, **fields)
-
-
-def order_speeds(model: Model) -> Array:
-    """Order speeds [rad/s] of the undamped elastic modes in top gear."""
-    system, _ = at_operating_point(model, mean_torque(model))
-    return _elastic(natural_frequencies(system)) / main_order(model)
-
-
-def _elastic(omega: Array) -> Array:
-    return np.asarray(omega[omega > 0])
-
-
-def flywheel_alone(model: Model) -> Array:
-    """Order speeds [rad/s] of engine and flywheel with an open clutch."""
-    for spring in model.landmarks.springs:
-        model = sprung(model, spring, stiffness(model, spring))
-    nodes = reached(model.powertrain(), [model.landmarks.crankshaft], [model.landmarks.clutch])
-    return _elastic(natural_frequencies(assemble(Powertrain(within(model, nodes))))) / main_order(model)
-
-
-def added(model: Model, resonances: Callable[[Model], Array] = order_speeds) -> float:
-    """Order speed [rad/s] of the resonance that the absorber adds.
-
-    Of N + 1 modes it is the one after those that the line without the absorber has below the tuning: with a vanishing
-    absorber it starts at the tuning, and the modes of a line do not cross as the absorber grows.
-    """
-    below = int((resonances(without(model, RING, SPRING)) < tuning(model)).sum())
-    return float(resonances(model)[below])
 
 
 @claim(

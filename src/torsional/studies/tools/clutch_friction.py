@@ -81,13 +81,13 @@ def _curves(found: list[Answer], far: float) -> dict[str, Curve]:
     peak, at = np.array([one.peak for one in found]).T
     away = np.array([one.amplitude[-1] for one in found])
     power = np.array([[one.at(place, one.power), one.power[-1]] for one, place in zip(found, at, strict=True)])
-    panel = "gearbox input, acceleration"
+    at_far = f"at {far / RPM:.0f} rpm"
     return {
-        "peak": Curve(peak, "acceleration", "largest, at the resonance", panel, HALF),
-        "far": Curve(away, "acceleration", f"at {far / RPM:.0f} rpm", panel, HALF),
+        "peak": Curve(peak, "acceleration", panel="largest acceleration", amplitude=HALF),
+        "far": Curve(away, "acceleration", panel=f"acceleration {at_far}", amplitude=HALF),
         "resonance": Curve(at, "speed", panel="speed of the largest"),
         "power": Curve(power[:, 0], "power", "at the resonance", "friction power"),
-        "far_power": Curve(power[:, 1], "power", f"at {far / RPM:.0f} rpm", "friction power"),
+        "far_power": Curve(power[:, 1], "power", at_far, "friction power"),
     }
 
 
@@ -95,7 +95,8 @@ def _findings(data: xr.Dataset, least: float, limit: float) -> Iterator[str]:
     first, last, best = (data.isel(friction_torque=place) for place in (0, -1, _best(data)))
     low, high, middle = (float(each.friction_torque) for each in (first, last, best))
     yield (
-        f"with {low:.0f} Nm the resonance at {float(first.resonance) / RPM:.0f} rpm has {float(first.peak):.0f} rad/s², "
+        f"with {low:.0f} Nm the resonance at {float(first.resonance) / RPM:.0f} rpm has "
+        f"{float(first.peak):.0f} rad/s², "
         f"lowest with {middle:.0f} Nm: {float(best.peak):.0f} rad/s²"
     )
     far = f"from {float(first.far):.0f} to {float(last.far):.0f} rad/s²"

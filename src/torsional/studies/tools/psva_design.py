@@ -14,7 +14,7 @@ from torsional.numerics.arrays import Array
 from torsional.studies.advice import HALF, advised, chosen, drawn, over, positive, values_of
 from torsional.studies.answers import INPUT, STEP, at_input, main_order, speeds
 from torsional.studies.base import tool
-from torsional.studies.claims.power_split import Parts, cancelled
+from torsional.studies.power_split import Parts, cancelled
 from torsional.studies.swept import Along, Curve
 from torsional.studies.trucks import Trucks, merged, replaced, sprung
 from torsional.units import RPM
@@ -64,10 +64,12 @@ def psva_design(
     if held:
         _refuse_both(symbol)
         models = [_tuned(each, wanted) for each in models]
-    data = over(Along(varied.replace("-", "_"), at, quantity, varied.replace("-", " ")), _curves(models, gear), model)
-    condition = (
-        f"{INPUT.replace('top gear', 'gear ' + model.gear_name(gear))}; {trucks.origins.get('psva', 'as given')}"
+    data = over(
+        Along(varied.replace("-", "_"), at, quantity, varied.replace("-", " ")),
+        _curves(models, gear) | _following(models, held),
+        model,
     )
+    condition = f"{INPUT.replace('top gear', 'gear ' + model.gear_name(gear))}; absorber: {trucks.origins.get('psva', 'as given')}"
     return advised(data, "psva-design", model, condition, list(_findings(model, data, wanted, held)))
 
 
@@ -123,8 +125,8 @@ def _curves(models: list[Model], gear: str) -> dict[str, Curve]:
     speed = "engine speed"
     return {
         "cancellation": Curve(at, "speed", "output stands still, undamped", speed),
-        "better_from": Curve(low, "speed", "quieter than the DMF from", speed),
-        "better_to": Curve(up, "speed", "to", speed),
+        "better_from": Curve(low, "speed", "lowest at which it is quieter than the DMF", speed),
+        "better_to": Curve(up, "speed", "highest", speed),
         "depth": Curve(ratio.min(axis=1), "ratio", "lowest over the DMF's", "amplitude over the corresponding DMF's"),
         "high": Curve(
             own[:, high].mean(axis=1),
@@ -140,8 +142,12 @@ def _curves(models: list[Model], gear: str) -> dict[str, Curve]:
             f"mean from {grid[high][0] / RPM:.0f} rpm on, acceleration",
             HALF,
         ),
-        "planet_inertia_used": Curve([Parts.of(each).J3 for each in models], "inertia", panel="planet inertia"),
     }
+
+
+def _following(models: list[Model], held: bool) -> dict[str, Curve]:
+    used = Curve([Parts.of(each).J3 for each in models], "inertia", panel="planet inertia")
+    return {"planets": used} if held else {}
 
 
 def _findings(model: Model, data: xr.Dataset, wanted: float, held: bool) -> Iterator[str]:

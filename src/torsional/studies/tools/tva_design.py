@@ -14,9 +14,9 @@ from torsional.numerics.arrays import Array
 from torsional.studies.advice import HALF, advised, chosen, drawn, over, positive, values_of
 from torsional.studies.answers import INPUT, STEP, at_input, main_order, modes, speeds
 from torsional.studies.base import tool
-from torsional.studies.claims.tuned import RING, SPRING, added, tuning
 from torsional.studies.swept import Along, Curve
 from torsional.studies.trucks import Trucks, replaced, without
+from torsional.studies.tuned_absorber import RING, SPRING, added, tuning
 from torsional.units import RPM
 
 CARRIERS = ("flange", "secondary")
@@ -83,7 +83,9 @@ def _curves(models: list[Model], tuned: float, gear: str) -> dict[str, Curve]:
     return {
         "resonance": Curve(resonance, "speed", "resonance that the absorber adds", panel, **limit),  # type: ignore[arg-type]
         "separation": Curve(1 - resonance / tuned, "ratio", panel="separation over the tuning speed"),
-        "at_tuning": Curve(notch / bare_there, "ratio", "at the tuning speed", ratio, limit=1.0),
+        "at_tuning": Curve(
+            notch / bare_there, "ratio", "at the tuning speed", ratio, limit=1.0, limit_words="as without it"
+        ),
         "worst": Curve(found.max(axis=1) / bare.max(), "ratio", "largest over the range", ratio),
         "median": Curve(np.median(found / bare, axis=1), "ratio", "median over the range", ratio),
         "largest": Curve(found.max(axis=1), "acceleration", "with absorber", "largest acceleration in the range", HALF),
