@@ -55,9 +55,7 @@ def test_every_option_is_described_and_has_a_default(name: str) -> None:
 # --- cylinder-deactivation ---
 
 
-def test_cylinder_deactivation_tells_the_figures_of_the_claim(
-    trucks: Trucks, outcomes: Mapping[str, Outcome]
-) -> None:
+def test_cylinder_deactivation_tells_the_figures_of_the_claim(trucks: Trucks, outcomes: Mapping[str, Outcome]) -> None:
     found = asked("cylinder-deactivation", trucks)
     figures = outcomes["G4"].finding.figures
     for concept in found.concept.values:

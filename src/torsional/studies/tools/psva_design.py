@@ -69,7 +69,8 @@ def psva_design(
         _curves(models, gear) | _following(models, held),
         model,
     )
-    condition = f"{INPUT.replace('top gear', 'gear ' + model.gear_name(gear))}; absorber: {trucks.origins.get('psva', 'as given')}"
+    where = INPUT.replace("top gear", f"gear {model.gear_name(gear)}")
+    condition = f"{where}; absorber: {trucks.origins.get('psva', 'as given')}"
     return advised(data, "psva-design", model, condition, list(_findings(model, data, wanted, held)))
 
 
