@@ -18,7 +18,18 @@ def command_line_page(program: Any) -> str:
     parts.append("\n".join(f"* [`{name}`](#torsional-{name}): {_cell(c.help)}" for name, c in program.commands.items()))
     for name, command in program.commands.items():
         parts += [f"(torsional-{name})=\n## `torsional {name}`", _cell(command.help), _parameters(command)]
+        parts += _members(name, command)
     return "\n\n".join(parts) + "\n"
+
+
+def _members(name: str, group: Any) -> list[str]:
+    """The commands of a command that has some."""
+    parts = []
+    for member in group.list_commands(None) if hasattr(group, "list_commands") else []:
+        command = group.get_command(None, member)
+        head = f"(torsional-{name}-{member})=\n### `torsional {name} {member}`"
+        parts += [head, _cell(command.help), _parameters(command)]
+    return parts
 
 
 def _parameters(command: Any) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from torsional import __version__
 from torsional.cli.documents import described, escaped, json_text
+from torsional.cli.failures import clean
 from torsional.cli.outputs import Writer, text_writer, written
 from torsional.cli.request import Request
 from torsional.cli.tables import Table, print_tables
@@ -26,7 +27,7 @@ class Answer:
     """``tables`` are printed; ``document`` goes to --json and .json, with ``data`` as its result.
 
     ``data`` is also what .csv holds, or ``columns`` where that is less; ``full`` what .nc holds, where that is more;
-    ``picture`` draws a figure.
+    ``picture`` draws a figure; ``sentences`` are printed before the tables.
     """
 
     command: str
@@ -36,6 +37,7 @@ class Answer:
     full: xr.Dataset | None = None
     picture: Callable[[], Figure] | None = None
     columns: xr.Dataset | None = None
+    sentences: Sequence[str] = ()
 
 
 def told_settings(request: Request, **settings: object) -> dict[str, object]:
@@ -53,6 +55,8 @@ def deliver(answer: Answer, request: Request) -> None:
     if request.as_json:
         print_json(text)
     elif not request.quiet:
+        if answer.sentences:
+            print("\n".join(map(clean, answer.sentences)), end="\n\n")
         print_tables(answer.tables)
     if not request.quiet:
         for path in request.outputs:

@@ -23,7 +23,12 @@ app = typer.Typer(
 
 def command() -> Any:
     """The command line as one callable; called without typer's own handling it returns the job to do."""
-    for module in ("steady", "moving", "writing"):  # in the order of the help; each declares its commands on the app
+    for module in (
+        "steady",
+        "moving",
+        "asking",
+        "writing",
+    ):  # in the order of the help; each declares its commands on the app
         import_module(f"torsional.cli.commands.{module}")
     return typer.main.get_command(app)
 

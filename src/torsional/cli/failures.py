@@ -58,8 +58,8 @@ def _run(arguments: list[str]) -> int:
     if arguments and arguments[0] in program.commands:  # straight to it: typer would first work through the group's own
         path = f"torsional {arguments[0]}"
         program, arguments = program.commands[arguments[0]], arguments[1:]
-    else:
-        arguments = arguments or ["--help"]
+    if not arguments and hasattr(program, "list_commands"):
+        arguments = ["--help"]
     try:
         job: Any = program(args=arguments, prog_name=path, standalone_mode=False, help_option_names=HELP)
     except Exception as failure:

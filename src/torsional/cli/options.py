@@ -196,3 +196,23 @@ Compare = Annotated[
     list[Path] | None,
     _taking("--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated."),
 ]
+
+ClaimIds = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="IDS", help="Claims, as B2 C3; a letter for all of its paper; default: all.", show_default=False
+    ),
+]
+TruckFile = Annotated[
+    Path | None, _taking("--truck", metavar="MODEL", help="A model file to ask; default: the shipped truck.")
+]
+StudyModel = Annotated[
+    Path | None,
+    typer.Argument(metavar="MODEL", help="Model file to ask; default: the shipped truck.", show_default=False),
+]
+Quick = Annotated[bool, typer.Option("--quick", help="Ask the truck alone, not many varied ones.")]
+Many = Annotated[int, typer.Option("--trucks", metavar="N", min=1, help="How many varied trucks are asked together.")]
+Processes = Annotated[
+    int,
+    typer.Option("--processes", metavar="N", min=0, help="Processes side by side; 0: one a core.", show_default=False),
+]

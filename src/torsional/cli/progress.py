@@ -24,6 +24,13 @@ def progress(task: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
+def waiting(task: str, quiet: bool) -> Iterator[None]:
+    """Something that moves while a work goes on whose steps are not counted."""
+    with progress(task, quiet):
+        yield
+
+
+@contextmanager
 def running(task: str, quiet: bool) -> Iterator[Callable[[float, float, float], None]]:
     """A function (time, end, speed) that tells how far a run in time is, and how much faster than life it goes."""
     if quiet or not styled(sys.stderr):

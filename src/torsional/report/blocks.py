@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from matplotlib.figure import Figure
@@ -23,9 +23,12 @@ class Text:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading inside a section."""
+    """A heading inside a section; ``name`` for links to it, a ``badge`` behind it in a ``tone``: good, partly, bad."""
 
     text: str
+    name: str = ""
+    badge: str = ""
+    tone: str = ""
     kind: ClassVar[str] = "heading"
 
 
@@ -40,13 +43,18 @@ class Items:
 
 @dataclass(frozen=True)
 class Table:
-    """A table: ``head`` and ``rows`` of text; ``numbers`` are columns set to the right; ``folded`` starts closed."""
+    """A table: ``head`` and ``rows`` of text; ``numbers`` are columns set to the right; ``folded`` starts closed.
+
+    ``wrapped``: cells hold sentences; ``links``: where first cells lead to, by their text.
+    """
 
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numbers: frozenset[int] = frozenset()
     folded: bool = False
+    wrapped: bool = False
+    links: Mapping[str, str] = field(default_factory=dict)
     kind: ClassVar[str] = "table"
 
 
@@ -87,7 +95,12 @@ def picture(figure: Figure, caption: str, alternative: str) -> Picture:
 
 
 def table(
-    caption: str, head: Sequence[str], rows: Sequence[Sequence[str]], numbers: Sequence[int] = (), folded: bool = False
+    caption: str,
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    numbers: Sequence[int] = (),
+    folded: bool = False,
+    wrapped: bool = False,
 ) -> Table:
     """A table from sequences."""
-    return Table(caption, tuple(head), tuple(tuple(row) for row in rows), frozenset(numbers), folded)
+    return Table(caption, tuple(head), tuple(tuple(row) for row in rows), frozenset(numbers), folded, wrapped)

@@ -1,0 +1,39 @@
+"""Commands that ask whole studies: the thesis's claims, and the tools that engineers run by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from torsional.cli import options as o
+from torsional.cli.app import app
+from torsional.cli.jobs import Job, job
+from torsional.cli.study_group import StudyGroup
+
+
+@app.command()
+def claims(
+    ids: o.ClaimIds = None,
+    truck: o.TruckFile = None,
+    changes: o.Changes = None,
+    quick: o.Quick = False,
+    trucks: o.Many = 200,
+    processes: o.Processes = 0,
+    as_json: o.Json = False,
+    output: o.Page = Path("claims.html"),
+    quiet: o.Quiet = False,
+) -> Job:
+    """The claims of the thesis judged on a truck.
+
+    Writes a page with statement, criterion, figures, picture and verdict of each, and on how many of many varied trucks
+    it holds; the same figures as .json beside it.
+    """
+    return job("claims", **locals())
+
+
+app.add_typer(
+    typer.Typer(cls=StudyGroup, rich_markup_mode=None),
+    name="study",
+    help="Design studies by name: torsional study lists them.",
+)
