@@ -39,17 +39,7 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
     >>> [f"{x.real:.8e}" for x in response.angle.values[0, 0]]
     ['-2.11618759e-05', '8.28883610e-06']
     """
-    linear(system)
-    speed = np.atleast_1d(excitation.speed)
-    if speed.ndim > 1:
-        raise ModelError("the excitation has more than one axis of speeds", remedy="use response_map for grids")
-    kept = excitation.orders > 0
-    orders = excitation.orders[kept]
-    torque = np.moveaxis(excitation.torque.reshape(len(speed), len(excitation.nodes), -1)[..., kept], 1, 2)
-    turning = np.repeat(speed, len(orders))
-    omega = np.outer(speed, orders).ravel()
-    q, status = response(system, omega, turning, excitation.nodes, torque.reshape(omega.size, -1))
-    _refuse_singular(system, status, omega, turning)
+    speed, orders, omega, turning, q = order_response(system, excitation)
     grid = (len(speed), len(orders), -1)
     return dataset(
         {
@@ -71,6 +61,22 @@ def harmonic_response(system: System, excitation: Excitation) -> xr.Dataset:
         amplitude="complex 0-peak",
         system_hash=system.hash,
     )
+
+
+def order_response(system: System, excitation: Excitation) -> tuple[Array, Array, Array, Array, ComplexArray]:
+    """`harmonic_response` as arrays: speeds, orders; of every pair its frequency, speed and coordinates (pairs, …)."""
+    linear(system)
+    speed = np.atleast_1d(excitation.speed)
+    if speed.ndim > 1:
+        raise ModelError("the excitation has more than one axis of speeds", remedy="use response_map for grids")
+    kept = excitation.orders > 0
+    orders = excitation.orders[kept]
+    torque = np.moveaxis(excitation.torque.reshape(len(speed), len(excitation.nodes), -1)[..., kept], 1, 2)
+    turning = np.repeat(speed, len(orders))
+    omega = np.outer(speed, orders).ravel()
+    q, status = response(system, omega, turning, excitation.nodes, torque.reshape(omega.size, -1))
+    _refuse_singular(system, status, omega, turning)
+    return speed, orders, omega, turning, q
 
 
 def response(

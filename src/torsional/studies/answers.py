@@ -6,6 +6,7 @@ Amplitudes are those of one order, half peak-to-peak.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -13,15 +14,16 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
+from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.model import Model
-from torsional.numerics.arrays import Array
-from torsional.quantities import acceleration
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import labelled
-from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.harmonic import harmonic_response, node_angles, order_response
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.trucks import reached
+from torsional.system import System
 from torsional.units import RPM
 
 Curves: TypeAlias = Mapping[str, ArrayLike]
@@ -60,19 +62,39 @@ def responded(
 
     ``orders``: the firing order alone unless given.
     """
+    return harmonic_response(*_loaded(model, speed, torque, gear, orders))
+
+
+@lru_cache(maxsize=16)
+def linear_system(model: Model, torque: float, gear: str | None = None) -> System:
+    """The linear system about a mean torque [Nm]; kept, as searches ask it point by point."""
+    return at_operating_point(model, torque, gear)[0]
+
+
+def _loaded(
+    model: Model, speed: Array, torque: ArrayLike | None, gear: str | None, orders: ArrayLike | None = None
+) -> tuple[System, Excitation]:
+    """The linear system and what the engine does to it."""
     means = np.broadcast_to(mean_torque(model) if torque is None else np.asarray(torque, dtype=float), speed.shape)
-    system, _ = at_operating_point(model, float(means[0]), gear)
+    system = linear_system(model, float(means[0]), gear)
     asked = [main_order(model)] if orders is None else orders
     nodes: Sequence[str] = model.landmarks.throws
     if len(nodes) == 1:  # a lumped engine
         nodes = nodes[0]
-    return harmonic_response(system, model.running_engine.excitation(nodes, speed, means, asked))
+    return system, model.running_engine.excitation(nodes, speed, means, asked)
 
 
 def at_input(model: Model, speed: Array, torque: ArrayLike | None = None, gear: str | None = None) -> Array:
     """Amplitude of the firing order's acceleration at the gearbox input [rad/s²], half peak-to-peak, over speed."""
-    found = acceleration(responded(model, speed, torque, gear).angle.sel(node=model.landmarks.input))
-    return np.asarray(np.abs(found.isel(order=0).values))
+    system, drive = _loaded(model, speed, torque, gear)
+    angle = order_angles(system, drive, model.landmarks.input)
+    return np.asarray(np.abs((main_order(model) * speed) ** 2 * angle))
+
+
+def order_angles(system: System, drive: Excitation, node: str) -> ComplexArray:
+    """Angle of a node [rad], complex 0-peak, over the speeds of an excitation by one order."""
+    *_, q = order_response(system, drive)
+    return np.asarray(node_angles(system, q)[:, system.node_index(node)])
 
 
 def input_shaft(model: Model) -> str:
@@ -87,7 +109,7 @@ def input_shaft(model: Model) -> str:
 
 def modes(model: Model, gear: str | None = None) -> xr.Dataset:
     """Undamped elastic modes about the mean torque, with the ``order_speed`` [rad/s] of the firing order."""
-    system, _ = at_operating_point(model, mean_torque(model), gear)
+    system = linear_system(model, mean_torque(model), gear)
     found = modal(system)
     found = found.isel(mode=np.flatnonzero(found.frequency.values > 0))
     return found.assign(order_speed=("mode", 2 * np.pi * found.frequency.values / main_order(model)))

@@ -14,7 +14,7 @@ from torsional.components import Inertia, PlanetSpin, Superposition
 from torsional.engine import Excitation
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.solvers.harmonic import harmonic_response
+from torsional.solvers.harmonic import node_angles, order_response
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import lowest, main_order, mean_torque
 from torsional.studies.trucks import only, replaced, stiffness
@@ -76,8 +76,9 @@ def transfer(model: Model) -> Callable[[Array], ComplexArray]:
     system, order = at_operating_point(model, mean_torque(model))[0], main_order(model)
 
     def ratio(speed: Array) -> ComplexArray:
-        angle = harmonic_response(system, Excitation.unit(first, [order], speed)).angle.isel(order=0)
-        return np.asarray(angle.sel(node=output).values / angle.sel(node=first).values)
+        *_, q = order_response(system, Excitation.unit(first, [order], speed))
+        angle = node_angles(system, q)
+        return np.asarray(angle[:, system.node_index(output)] / angle[:, system.node_index(first)])
 
     return ratio
 

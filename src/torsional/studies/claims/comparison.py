@@ -197,7 +197,8 @@ def a14(trucks: Trucks) -> Finding:
     speed, figures = speeds(trucks.smf, STEP), dict[str, Figure]()
     curves, share = dict[str, Curve](), list[float]()
     for name, model in (("SMF", trucks.smf), ("DMF", trucks.dmf)):
-        change = np.array([_changes(model, speed, gear) for gear in model.gear_names])
+        both = [damped(model, factor) for factor in (0.5, 1.5)]
+        change = np.array([_changes(model, both, speed, gear) for gear in model.gear_names])
         named = {gear: speed[row > 0.05] for gear, row in zip(model.gear_names, change, strict=True)}
         figures |= {
             f"{name}: largest change [%]": 100 * float(change.max()),
@@ -224,8 +225,8 @@ def _changed(name: str, change: Array) -> dict[str, Curve]:
     }
 
 
-def _changes(model: Model, speed: Array, gear: str) -> Array:
+def _changes(model: Model, others: list[Model], speed: Array, gear: str) -> Array:
     """Larger of both relative changes over speed in one gear."""
     own = at_input(model, speed, gear=gear)
-    both = [np.abs(at_input(damped(model, factor), speed, gear=gear) / own - 1) for factor in (0.5, 1.5)]
+    both = [np.abs(at_input(other, speed, gear=gear) / own - 1) for other in others]
     return np.maximum(*both)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from torsional.model import Model
@@ -111,9 +113,15 @@ def _as_said(told: Array) -> bool:
     return falling(peak) and rising(far) and rising(power) and bool((power > 0).all())
 
 
+@lru_cache(maxsize=64)
+def peak(model: Model, torque: float, viscous: float) -> tuple[float, float]:
+    """The largest amplitude about the resonance [rad/s²] and its speed; kept, as one search goes where another went."""
+    return answered(washed(model, torque, viscous), AROUND).peak
+
+
 def needed(model: Model, limit: float, viscous: float) -> float:
     """The friction torque [Nm] that brings the largest amplitude about the resonance under a limit [rad/s²]."""
-    return least_torque(lambda torque: answered(washed(model, torque, viscous), AROUND).peak[0] - limit, LEAST, MOST)
+    return least_torque(lambda torque: peak(model, torque, viscous)[0] - limit, LEAST, MOST)
 
 
 @claim(
@@ -132,10 +140,10 @@ def a9(trucks: Trucks) -> Finding:
         label = f"viscous damping × {viscous:g}, limits {', '.join(f'{limit:g}' for limit in limits)} rad/s²"
         figures |= {f"{label}: {name} [Nm]": tuple(map(_told, found)) for name, found in torques.items()}
         good &= all(double < single for single, double in zip(*torques.values(), strict=True))
-    bare = {name: answered(washed(m, LEAST, LIGHT), AROUND).peak for name, m in _pair(trucks).items()}
+    bare = {name: peak(m, LEAST, LIGHT) for name, m in _pair(trucks).items()}
     figures |= {f"viscous damping × {LIGHT:g}: {name} with {LEAST:g} Nm [rad/s²]": p for name, (p, _) in bare.items()}
     figures |= {f"viscous damping × {LIGHT:g}: {name} at [rpm]": at / RPM for name, (_, at) in bare.items()}
-    best = answered(washed(trucks.smf, MOST, LIGHT), AROUND).peak[0]
+    best = peak(trucks.smf, MOST, LIGHT)[0]
     figures[f"viscous damping × {LIGHT:g}: SMF with {MOST:g} Nm [rad/s²]"] = best
     return Finding(good, CONDITION, figures, UNREACHED if best > max(LIMITS) else "")
 
