@@ -122,6 +122,7 @@ def _ranges(found: list[Place]) -> list[str]:
     "Several stable steady states can coexist at one speed and load.",
     "at one speed and mean torque, within full load, at least two stable periodic motions; runs in time that begin 3 % "
     "off either, exact between hinges and by time steps, stay with it, orders 1.5 and 3 within 2 %",
+    trucks=40,
 )
 def b5(trucks: Trucks) -> Finding:
     spring = trucks.two_stage.landmarks.springs[0]

@@ -83,6 +83,7 @@ def balanced(one: Curve) -> Array:
     "over a sweep of the washer's friction torque the largest amplitude falls strictly, the amplitude at 1500 rpm "
     "rises strictly, and the friction power at the resonance is positive and rises strictly; runs by time steps at "
     "three of the friction torques tell the same within 3 %",
+    trucks=60,
 )
 def a5(trucks: Trucks) -> Finding:
     model, ends = trucks.smf, (AROUND[0], FAR)
@@ -131,6 +132,7 @@ def needed(model: Model, limit: float, viscous: float) -> float:
     "is needed than for the resonance with a single mass flywheel.",
     "friction torque that brings the largest amplitude about the resonance under common limits: smaller with the dual "
     "mass flywheel for every limit, in a clutch that relies on its washer",
+    trucks=40,
 )
 def a9(trucks: Trucks) -> Finding:
     figures: dict[str, Figure] = {}

@@ -133,6 +133,7 @@ def _excited(model: Model) -> Excitation:
     "the gearbox input swings by less than a quarter of the crankshaft; after it the springs keep being met, the "
     "motion repeats itself after two periods of the firing or more, and the input swings at least twice as much as "
     "before",
+    trucks=40,
 )
 def b6(trucks: Trucks) -> Finding:
     model, spring = trucks.dmf, trucks.dmf.landmarks.springs[0]

@@ -124,6 +124,7 @@ REASON = (
     "error of RMS and third order over steps of 0.05 to 1 ms with spectral radius 1 and below: at every operating "
     "point at which springs rattle, the largest step up to which the error stays within 5 % is at least three times as "
     "long with some radius below 1 as with 1",
+    trucks=0,  # about a method, not about trucks
 )
 def e2(trucks: Trucks) -> Finding:
     figures: dict[str, Figure] = {"steps [ms]": floats(1e3 * STEPS)}

@@ -78,6 +78,7 @@ def largest(orders: xr.DataArray) -> Array:
     "below 60 % of the transition's torque the two-stage DMF vibrates as the soft one (within 1 %) and less than the "
     "stiff one at every speed; it carries the peak of full load short of its stop, which the soft one cannot; cells in "
     "which the swing about the mean meets a stop are named",
+    trucks=40,
 )
 def a12(trucks: Trucks) -> Finding:
     model = trucks.two_stage

@@ -72,6 +72,7 @@ def _straightness(x: Array, y: Array) -> float:
     "continuation from the third-order motion finds a branch of twice the period; its speeds lie in the lower half of "
     "the range, between twice the mode's order speeds in the soft and in the stiff stage; runs in time from rest, "
     "exact between hinges and by time steps, have its amplitude within 2 %",
+    trucks=100,
 )
 def b1(trucks: Trucks) -> Finding:
     model = trucks.two_stage
@@ -144,6 +145,7 @@ def _drawn(model: Model, branch: Branch, order: float) -> xr.Dataset:
     "The largest vibration of order 1.5 is almost linear in the difference of the two stiffnesses.",
     "torque in the DMF and torque at the gearbox input over at least six differences above the onset: R² above 0.97, "
     "k2 varied and k1 varied; acceleration, twist, a second damping and the onset reported",
+    trucks=40,
 )
 def b2(trucks: Trucks) -> Finding:
     found = cases(trucks.two_stage)
@@ -194,6 +196,7 @@ def _swept(id: str, found: tuple[Case, ...], which: int) -> xr.Dataset:
     "6.1",
     "The mean torque of the largest vibration of order 1.5 lies above the transition between the stages.",
     "strictly above in every case of B2 at the shipped damping, for all quantities; the second damping reported",
+    trucks=40,
 )
 def b3(trucks: Trucks) -> Finding:
     found = cases(trucks.two_stage)
@@ -217,6 +220,7 @@ def b3(trucks: Trucks) -> Finding:
     "6.1",
     "That mean torque varies almost linearly with the difference of the stiffnesses.",
     "R² above 0.95, k2 varied and k1 varied, the largest torque in the DMF located along branches to about 2 Nm",
+    trucks=40,
 )
 def b4(trucks: Trucks) -> Finding:
     found = cases(trucks.two_stage)

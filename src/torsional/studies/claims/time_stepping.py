@@ -82,6 +82,7 @@ def _timed(motion: LooseMotion, once: Callable[[], Array], accuracy: float, roun
     "CPU time of whole runs in one process, compiled code warm: the active-set steps (the LCP's solution) with their "
     "dataset take less than each of the stiff adaptive integrators at the loosest tolerance that comes to their error, "
     "right-hand side compiled and Jacobian given. An explicit integrator is told too",
+    trucks=0,  # about a method, not about trucks
 )
 def e1(trucks: Trucks) -> Finding:
     motion = LooseMotion(trucks.dmf)
