@@ -9,7 +9,7 @@ from torsional.studies.base import Finding, Outcome, shown
 from torsional.studies.register import claims
 
 IDS = [
-    *(f"A{n}" for n in range(1, 16)),
+    *(f"A{n}" for n in range(1, 17)),
     *(f"B{n}" for n in range(1, 7)),
     *(f"C{n}" for n in range(1, 7)),
     *(f"D{n}" for n in range(1, 5)),

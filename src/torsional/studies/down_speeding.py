@@ -33,7 +33,7 @@ LOADS = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Mean torques looked at, over full load.  The swing of a linear line is convex in the engine's torque, and the
 engine's harmonics hardly bend over load, so that the worst is at one of the ends."""
 FINE = 5 * RPM
-"""Step in which a moved full-load curve is told [rad/s]: between its points the power is kept to 5e-6 of the highest."""
+"""Step in which a moved full-load curve is told [rad/s]: between its points power is kept to 5e-6 of the highest."""
 
 LEVELS = 17
 """Mean torques between which a line is tried for straightness."""
