@@ -302,6 +302,6 @@ def test_tool(trucks: Trucks) -> None:
 
 
 def test_tool_without_chart(car: Trucks) -> None:
-    data = down_speeding(car, by=(BY,), chart=False, cap=BY)
+    data = down_speeding(car, by=(BY,), no_chart=True, cap=BY)
     assert data.inertia.size == 0 and data.gear.size == 6
     assert len(save_png(down_speeding.picture(data))) > 10_000

@@ -23,10 +23,12 @@ def with_unit(text: str, quantity: str) -> str:
 
     >>> with_unit("600:2000", "speed"), with_unit("600:2000 1/min", "speed"), with_unit("3", "engine_order")
     ('600:2000 rpm', '600:2000 1/min', '3')
+    >>> with_unit("900 rad/s²", "acceleration")
+    '900 rad/s²'
     """
     unit = unit_of(quantity)
     bare = text.rstrip()
-    written = unit == "-" or not (bare[-1:].isdigit() or bare[-1:] == ".") or bare.endswith(("-1", "s2"))
+    written = unit == "-" or not (bare[-1:].isdecimal() or bare[-1:] == ".") or bare.endswith(("-1", "s2"))
     return text if written else f"{bare} {unit}"
 
 

@@ -43,16 +43,20 @@ def down_speeding(
     *,
     by: Annotated[tuple[float, ...], "speed", "how far the engine's range moves down"] = (100 * RPM, 200 * RPM),
     limit: Annotated[
-        float, "acceleration", "limit at the gearbox input (0: the DMF's worst, as it is, in the range of today)"
-    ] = 0.0,
+        float | None, "acceleration", "limit at the gearbox input (default: the worst of the DMF as it is, today)"
+    ] = None,
     cruise: Annotated[
-        float, "speed", "engine speed at which the vehicle goes as fast afterwards (0: where full load leaves its peak)"
-    ] = 0.0,
+        float | None,
+        "speed",
+        "engine speed at which the vehicle stays as fast (default: where full load leaves its peak)",
+    ] = None,
     cap: Annotated[float, "speed", "farthest that is tried"] = 300 * RPM,
-    chart: Annotated[bool, "attainable down-speeding over the absorber's inertia as well"] = True,
     inertias: Annotated[
-        tuple[float, ...], "inertia", "inertias of whole absorbers in the chart (empty: 0.75 to 2.5 of the DMF's)"
-    ] = (),
+        tuple[float, ...] | None,
+        "inertia",
+        "inertias of whole absorbers in the chart (default: 0.75 to 2.5 of the DMF's)",
+    ] = None,
+    no_chart: Annotated[bool, "leave out the chart over the absorber's inertia, which takes longest"] = False,
 ) -> xr.Dataset:
     """Which absorber lets the engine run how much slower at equal power, at an equal limit at the gearbox input."""
     known = concepts(trucks)
@@ -62,7 +66,7 @@ def down_speeding(
     looks = {name: (as_it_is(concept, at), rematched(concept, at)) for name, concept in known.items()}
     found = {(name, step): [look(step) for look in pair] for name, pair in looks.items() for step in steps.tolist()}
     reached = [[attained(look, bound, cap) for look in pair] for pair in looks.values()]
-    sizes = np.array(inertias or np.array(SIZES) * known["DMF"].inertia) if chart else np.empty(0)
+    sizes = np.array([] if no_chart else (inertias or np.array(SIZES) * known["DMF"].inertia), dtype=float)
     charted = [[_charted(one, size, bound, at, cap) for size in sizes] for one in known.values()]
     data = _dataset(known, steps, found, np.array(reached), sizes, np.array(charted).reshape(len(known), -1))
     condition = (
