@@ -10,7 +10,7 @@ from torsional.studies.answers import at_input
 from torsional.studies.base import Outcome
 from torsional.studies.claims.pendulum import on_single, quiet_order
 from torsional.studies.trucks import Trucks, only, replaced, without
-from torsional.studies.tuned_absorber import added, flywheel_alone, order_speeds, sized, tuning
+from torsional.studies.tuned_absorber import added, flywheel_alone, order_speeds, sized, tuning, tunings_above
 from torsional.units import RPM
 
 
@@ -50,6 +50,27 @@ def test_d2_heavy_flywheels_and_light_flange(trucks: Trucks) -> None:
 def test_d2_open_clutch_separates_the_carriers(trucks: Trucks) -> None:
     flange, secondary = (sized(trucks.tva, 0.2, carrier) for carrier in ("", "secondary"))
     assert added(flange, flywheel_alone) < tuning(flange) < added(secondary, flywheel_alone)
+
+
+@pytest.mark.parametrize("carrier", ["", "secondary"])
+def test_d2_where_the_added_resonance_lies_above(trucks: Trucks, carrier: str) -> None:
+    """Tunings by the line with the carrier held still, against the modes of the line with absorbers so tuned."""
+    ends = tunings_above(trucks.tva, carrier)
+    assert len(ends) > 0
+    for inertia in (0.02, 2.0):
+        for rpm in (610.0, 650.0, 760.0, 780.0, 800.0, 820.0, 1000.0):
+            speed = rpm * RPM
+            k = inertia * (3 * speed) ** 2
+            own = replaced(replaced(trucks.tva, "tva", inertia=inertia), "tva_spring", stiffness=k)
+            own = replaced(own, "tva_spring", a=carrier) if carrier else own
+            assert (added(own) > speed) == any(low < speed < high for low, high in ends), (inertia, rpm)
+
+
+def test_d2_holds_for_some_tunings_only(outcomes: dict[str, Outcome]) -> None:
+    """Between the clutch mode at 765 rpm and 808 rpm the added resonance lies above."""
+    outcome = outcomes["D2"]
+    assert outcome.finding.figures["on the flange: added resonance above tunings of [rpm]"] == ("765–808",)
+    assert outcome.verdict == "reproduced with a condition" and "765–808 rpm" in outcome.finding.proviso
 
 
 def test_d3_figures(outcomes: dict[str, Outcome]) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from scipy.linalg import eigh, null_space
 
 from torsional.absorbers import tuned_stiffness
 from torsional.model import Model
@@ -60,3 +61,25 @@ def added(model: Model, resonances: Callable[[Model], Array] = order_speeds) -> 
     """
     below = int((resonances(without(model, RING, SPRING)) < tuning(model)).sum())
     return float(resonances(model)[below])
+
+
+def held_speeds(model: Model, node: str) -> Array:
+    """Order speeds [rad/s] of the undamped modes in top gear with a node held still."""
+    system, _ = at_operating_point(model, mean_torque(model))
+    Z = null_space(system.T[[system.node_index(node)]])
+    squares = eigh(Z.T @ system.K @ Z, Z.T @ system.M @ Z, eigvals_only=True)
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / main_order(model))
+
+
+def tunings_above(model: Model, carrier: str = "") -> list[tuple[float, float]]:
+    """Tunings [rad/s] within the operating range, as pairs of ends, whose added resonance lies above them.
+
+    Just below its tuning an absorber of any inertia holds its carrier still, so the count of modes below the tuning
+    (Wittrick and Williams, J. Sound Vib. 16 (1971), doi:10.1016/0022-460X(71)90100-1) is that of the line so held, and
+    the added mode is not among them from each mode of the line to its next one with the carrier held.
+    """
+    spring: Any = model.components[SPRING]
+    free, (low, high) = order_speeds(without(model, RING, SPRING)), model.operation.speed
+    held = held_speeds(without(model, RING, SPRING), carrier or spring.a)
+    ends = [(float(own), float(next((each for each in held if each > own), np.inf))) for own in free]
+    return [(max(first, low), min(last, high)) for first, last in ends if first < high and last > low]

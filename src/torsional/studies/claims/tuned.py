@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.answers import (
     INPUT,
@@ -19,7 +20,16 @@ from torsional.studies.answers import (
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.swept import Along, Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, replaced, without
-from torsional.studies.tuned_absorber import RING, SPRING, added, flywheel_alone, order_speeds, sized, tuning
+from torsional.studies.tuned_absorber import (
+    RING,
+    SPRING,
+    added,
+    flywheel_alone,
+    order_speeds,
+    sized,
+    tuning,
+    tunings_above,
+)
 from torsional.units import RPM
 
 INERTIAS = np.geomspace(0.02, 6.0, 24)
@@ -33,6 +43,12 @@ SECONDARY = (
     "on the secondary flywheel the added mode starts just below the tuning too, since clutch and gearbox hang on that "
     "flywheel; there it stays close, and the resonance above moves up. With an open clutch the added one lies above"
 )
+
+
+def ratio_at(model: Model, plain: Model, speed: float) -> float:
+    """Amplitude of one model over that of another at a speed [rad/s]."""
+    there = np.array([speed])
+    return float((at_input(model, there) / at_input(plain, there))[0])
 
 
 @claim(
@@ -50,7 +66,7 @@ def d1(trucks: Trucks) -> Finding:
     near = np.linspace(0.9, 1.1, 41) * at
     bare = replaced(model, SPRING, damping=0.0)
     found = lowest(lambda v: at_input(bare, v) / at_input(plain, v), near)
-    there, best = (float((at_input(m, np.array([at])) / at_input(plain, np.array([at])))[0]) for m in (model, bare))
+    there, best = (ratio_at(m, plain, at) for m in (model, bare))
     more = order_speeds(model).size - order_speeds(plain).size
     figures: dict[str, Figure] = {
         "modes more [-]": float(more),
@@ -59,6 +75,7 @@ def d1(trucks: Trucks) -> Finding:
         "ratio to no absorber there, undamped [-]": best,
         "ratio to no absorber there, as shipped [-]": there,
         "added resonance [rpm]": added(model) / RPM,
+        "ratio to no absorber at idle, as shipped [-]": ratio_at(model, plain, model.operation.idle),
     }
     panel, own, other = "gearbox input, acceleration", at_input(model, speed), at_input(plain, speed)
     curves = {
@@ -75,8 +92,10 @@ def d1(trucks: Trucks) -> Finding:
     "D2",
     "2.2.3, 6.1",
     "With the absorber on the intermediate flange the added resonance lies below the tuning frequency.",
-    "for every absorber inertia of a sweep; shown beside the absorber on the secondary flywheel",
-    varies="inertia of the absorber from 0.02 to 6 kgm² in 24 steps, tuned alike; on the flange, on the secondary",
+    "for every absorber inertia of a sweep at the absorber's tuning; tunings of the operating range at which it lies "
+    "above, whatever the inertia, are named; shown beside the absorber on the secondary flywheel",
+    varies="inertia of the absorber from 0.02 to 6 kgm² in 24 steps, tuned alike; its tuning over the operating range; "
+    "on the flange, on the secondary",
     leading="on the flange: highest added resonance over the tuning [-]",
 )
 def d2(trucks: Trucks) -> Finding:
@@ -95,6 +114,8 @@ def d2(trucks: Trucks) -> Finding:
         "shipped inertia, flange: resonances about the tuning [rpm]": _about(order_speeds(beside[0]), at),
         "shipped inertia, secondary: resonances about the tuning [rpm]": _about(order_speeds(beside[1]), at),
         "no absorber: resonances about the tuning [rpm]": _about(order_speeds(without(model, RING, SPRING)), at),
+        "on the flange: added resonance above tunings of [rpm]": _ranges(tunings_above(model)),
+        "on the secondary: added resonance above tunings of [rpm]": _ranges(tunings_above(model, last.a)),
         "open clutch, flange: added resonance [rpm]": lone[0] / RPM,
         "open clutch, secondary: added resonance [rpm]": lone[1] / RPM,
     }
@@ -104,14 +125,33 @@ def d2(trucks: Trucks) -> Finding:
         "secondary": Curve(secondary, "speed", "absorber on the secondary flywheel", panel),
     }
     data = swept("D2", SIZES, curves, model)
+    below = bool((flange < at).all())
     reason = SECONDARY if (secondary < at).all() and lone[1] > at else ""
-    return Finding(bool((flange < at).all()), MODES, figures, reason, data)
+    return Finding(below, MODES, figures, reason if below else ABOVE, data, _tuned_where(model) if below else "")
+
+
+ABOVE = "at this tuning a mode of the line lies just below, and with the flange held still none between it and the tuning"
+
+
+def _tuned_where(model: Model) -> str:
+    """At which tunings the added resonance lies below them; nothing where it does at all of the operating range."""
+    above = _ranges(tunings_above(model))
+    if not above:
+        return ""
+    return (
+        f"whatever the absorber's inertia, for tunings outside {' and '.join(above)} rpm only: there, from a mode of "
+        "the line up to where it would lie with the flange held still, the added resonance is above the tuning"
+    )
+
+
+def _ranges(ends: list[tuple[float, float]]) -> tuple[str, ...]:
+    return tuple(f"{low / RPM:.0f}–{high / RPM:.0f}" for low, high in ends)
 
 
 def _about(resonances: Array, at: float) -> tuple[float, ...]:
     """The resonances next to a speed, one on either side [rpm]."""
     below, above = resonances[resonances < at], resonances[resonances > at]
-    return floats(np.array([below.max(initial=0.0), above.min()]) / RPM)
+    return floats(np.array([below.max(initial=0.0), above.min(initial=np.inf)]) / RPM)
 
 
 @claim(
