@@ -93,6 +93,8 @@ def test_c4_planets_for_650_rpm(outcomes: dict[str, Outcome]) -> None:
     omega = 2 * np.pi * 32.5
     assert figures["planet inertia for 650 rpm, planetary [kgm²]"] == pytest.approx(13e3 / omega**2 / 2)
     assert figures["over the shipped power split absorber's [-]"] > 5
+    over = figures["planetary's over those in the model [-]"]
+    assert over == pytest.approx(figures["planet inertia for 650 rpm, planetary [kgm²]"] / 0.010) and over > 15
 
 
 def test_c5_two_cancellations(trucks: Trucks, outcomes: dict[str, Outcome]) -> None:

@@ -18,7 +18,7 @@ IDS = [
     *(f"G{n}" for n in range(1, 5)),
 ]
 NOT_REPRODUCED = {"A1", "A13", "F4"}
-WITH_A_CONDITION = {"D2", "E2", "G2"}
+WITH_A_CONDITION = {"A3", "D2", "E2", "G2"}
 
 
 def test_every_claim_is_there() -> None:

@@ -10,8 +10,9 @@ import pytest
 
 from torsional.studies.answers import mode_of, modes
 from torsional.studies.base import Outcome
-from torsional.studies.claims.resonances import stiffened, tracked, without_damper
-from torsional.studies.trucks import Trucks, sprung
+from torsional.studies.claims.resonances import behind_gears, stiffened, tracked, without_damper
+from torsional.studies.trucks import Trucks, replaced, sprung
+from torsional.units import RPM
 
 GEARS = {"12": 11, "10": 9, "8": 7, "4": 3}
 
@@ -28,6 +29,21 @@ def test_a2_one_mode_at_low_speed(outcomes: dict[str, Outcome]) -> None:
 @pytest.mark.parametrize(("gear", "rpm"), [("12", 654), ("10", 733), ("8", 790), ("4", 832)])
 def test_a3_by_gear(outcomes: dict[str, Outcome], gear: str, rpm: float) -> None:
     assert figure(outcomes, "A3", "order speed by gear [rpm]")[GEARS[gear]] == pytest.approx(rpm, abs=0.6)
+
+
+def test_a3_the_driveline_matters_in_high_gears_alone(outcomes: dict[str, Outcome], trucks: Trucks) -> None:
+    """Half-shafts take a share p of the mode's energy and move it by p/2 of their own change, for small changes."""
+    outcome = outcomes["A3"]
+    moved = figure(outcomes, "A3", "by gear: change by half_shafts ± 50 % [%]")
+    assert outcome.verdict == "reproduced with a condition" and "half_shafts" in outcome.finding.proviso
+    assert moved[-1] == pytest.approx(8.2, abs=0.1) and moved[0] < 0.1 < 5 < moved[-1]
+    assert set(behind_gears(trucks.smf)) == {"propeller_shaft", "half_shafts", "tyres"}
+    found = modes(trucks.smf)
+    place = mode_of(found, "clutch")
+    share = float(found.elastic_share.isel(mode=place).sel(element="half_shafts"))
+    other = replaced(trucks.smf, "half_shafts", stiffness=1.001 * behind_gears(trucks.smf)["half_shafts"])
+    raised = tracked(other, trucks.smf.top_gear, place) / (float(found.order_speed[place]) / RPM)
+    assert np.log(raised) / np.log(1.001) == pytest.approx(share / 2, rel=1e-3)
 
 
 def test_a4_stays_inside(outcomes: dict[str, Outcome], trucks: Trucks) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -22,6 +22,7 @@ from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response, node_angles, order_response
 from torsional.solvers.modal import modal
 from torsional.solvers.operating import at_operating_point
+from torsional.studies.concepts import Scale
 from torsional.studies.trucks import reached
 from torsional.system import System
 from torsional.units import RPM
@@ -39,6 +40,27 @@ def speeds(model: Model, step: float = STEP) -> Array:
     """Mean speeds of the operating range [rad/s]."""
     low, high = model.operation.speed
     return np.linspace(low, high, round((high - low) / step) + 1)
+
+
+def by_idle(model: Model, speed: ArrayLike) -> Any:
+    """A speed chosen for the shipped truck, moved with a truck's idle; on the shipped truck itself the same bits.
+
+    >>> from torsional.studies.trucks import Trucks
+    >>> by_idle(Trucks.shipped().dmf, 900.0)
+    900.0
+    """
+    return Scale.of(model).idle * speed  # type: ignore[operator]
+
+
+def by_peak(model: Model, torque: ArrayLike) -> Any:
+    """A torque, or a stiffness, chosen for the shipped truck, moved with the peak of a truck's full-load curve; on the
+    shipped truck itself the same bits.
+
+    >>> from torsional.studies.trucks import Trucks
+    >>> by_peak(Trucks.shipped().dmf, 1000.0)
+    1000.0
+    """
+    return Scale.of(model).torque * torque  # type: ignore[operator]
 
 
 def mean_torque(model: Model) -> float:
