@@ -51,7 +51,9 @@ def c4(trucks: Trucks) -> Finding:
         "over the shipped power split absorber's [-]": same / p.J3,
     }
     condition = "orders 0.5–12, operating range, top gear; the same springs, damping and inertias"
-    return Finding(worst < 1e-10 and alone > split, condition, figures, dataset=_asked(p, n, by_idle(trucks.psva, LOWER)))
+    return Finding(
+        worst < 1e-10 and alone > split, condition, figures, dataset=_asked(p, n, by_idle(trucks.psva, LOWER))
+    )
 
 
 def _positive(values: Array) -> Array:

@@ -130,7 +130,9 @@ def d2(trucks: Trucks) -> Finding:
     return Finding(below, MODES, figures, reason if below else ABOVE, data, _tuned_where(model) if below else "")
 
 
-ABOVE = "at this tuning a mode of the line lies just below, and with the flange held still none between it and the tuning"
+ABOVE = (
+    "at this tuning a mode of the line lies just below, and with the flange held still none between it and the tuning"
+)
 
 
 def _tuned_where(model: Model) -> str:
