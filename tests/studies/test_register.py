@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from torsional.studies.base import Finding, Outcome, shown
+from torsional.studies.answers import sweep
+from torsional.studies.base import Claim, Finding, Outcome, claim, shown
 from torsional.studies.register import claims
 
 IDS = [
@@ -57,3 +60,19 @@ def test_figures_as_text() -> None:
     assert shown(()) == "none"
     assert shown((1.0, 2.5)) == "1, 2.5"
     assert Finding(True, "c", {}).dataset is None
+
+
+def test_an_outcome_is_a_table_in_a_notebook() -> None:
+    claim = Claim("Z1", "1.2", "Springs are soft < hard.", "by hand")
+    told = Outcome(claim, Finding(True, "top gear", {"speed [rpm]": 650.0}, proviso="below idle"))._repr_html_()
+    assert "Z1: reproduced with a condition. Springs are soft &lt; hard." in told
+    assert "<td>holds where</td><td>below idle</td>" in told and "<td>speed [rpm]</td><td>650</td>" in told
+    assert "to be said" not in told  # there is nothing
+
+
+def test_what_draws_a_finding() -> None:
+    data = sweep("Z1", "factor", [1.0, 2.0], "ratio", speed=([3.0, 4.0], "speed"))
+    asked = claim("Z1", "1.2", "s", "c", picture=lambda found: found.sizes["factor"])(lambda trucks: None)
+    assert asked.drawn(Finding(True, "c", {}, dataset=data)) == 2
+    assert asked.drawn(Finding(True, "c", {})) is None
+    assert len(dataclasses.replace(asked, picture=None).drawn(Finding(True, "c", {}, dataset=data)).axes) == 1

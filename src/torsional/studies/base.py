@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from torsional.errors import ModelError
+from torsional.notebook import html_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,6 +76,15 @@ class Outcome:
         because = "".join(f" — {text}" for text in (self.finding.proviso, self.finding.reason) if text)
         return f"{self.claim.id} {self.verdict} ({self.finding.condition}): {told}{because}"
 
+    def _repr_html_(self) -> str:
+        """In a notebook: statement and verdict, how it was judged, every figure."""
+        finding, section = self.finding, f"thesis § {self.claim.section}"
+        judged = {"judged by": self.claim.criterion, "asked under": finding.condition}
+        judged |= {"holds where": finding.proviso, "to be said": finding.reason}
+        found = {name: shown(value) for name, value in {**finding.figures, **finding.measured}.items()}
+        rows = [(name, text) for name, text in {**judged, **found}.items() if text]
+        return html_table(f"{self.claim.id}: {self.verdict}. {self.claim.statement}", ("", section), rows)
+
 
 def shown(value: Figure) -> str:
     """A figure as text, four digits of every number.
@@ -110,6 +120,12 @@ class Study:
 
     def __call__(self, trucks: Trucks) -> Outcome:
         return Outcome(self.claim, self.question(trucks))
+
+    def drawn(self, finding: Finding) -> Picture | None:
+        """The picture of a finding; None of one that has no curves."""
+        from torsional.plots import plot_sweep
+
+        return None if finding.dataset is None else (self.picture or plot_sweep)(finding.dataset)
 
     def tried(self, trucks: Trucks) -> Outcome:
         """The outcome; one that is not answered, with the reason, where the trucks refuse the question."""
