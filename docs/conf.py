@@ -1,10 +1,12 @@
 """Sphinx configuration: pages are executed, warnings are errors, reference and nomenclature come from the package."""
 
+import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
+os.environ.pop("MPLBACKEND", None)  # which tests set: pages show what they draw
 
 import generate  # noqa: E402
 

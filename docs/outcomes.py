@@ -32,7 +32,7 @@ def _table(rows: Iterable[tuple[str, str, Any]]) -> str:
         f'<tr><td><a href="{link}">{id}</a></td><td>{escape(each.claim.statement)}</td><td>{_verdict(each)}</td></tr>'
         for id, link, each in rows
     )
-    return f"<table>{head}{body}</table>"
+    return f'<table class="docutils"><thead>{head}</thead><tbody>{body}</tbody></table>'
 
 
 def _verdict(outcome: Any) -> str:

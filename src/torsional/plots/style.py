@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import re
+import sys
 import warnings
 from collections.abc import Callable
 from functools import wraps
@@ -102,6 +104,16 @@ def figure_of(axes: Axes) -> Figure:
     figure = axes.get_figure(root=True)
     assert isinstance(figure, Figure)
     return figure
+
+
+def show_in_notebooks() -> None:
+    """Have a notebook show figures, which it does by itself only when pyplot has been imported."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if shell is not None and hasattr(shell, "kernel"):
+        importlib.import_module("IPython.core.pylabtools").select_figure_formats(shell, {"png"})
+
+
+show_in_notebooks()
 
 
 def plain(text: object, longest: int = 48) -> str:
