@@ -1,10 +1,14 @@
 """What a notebook shows: short tables, with units, that nothing typed by a user can break out of."""
 
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import torsional as tv
 from tests.shipped import shipped
+from torsional.plots.style import show_in_notebooks
 
 
 @pytest.fixture(scope="module")
@@ -41,3 +45,16 @@ def test_a_model_with_parts_missing_is_shown_too(truck: tv.Model) -> None:
 def test_names_are_escaped() -> None:
     page = tv.Model("<script>", {"a": tv.Inertia(1.0)}, tv.Landmarks())._repr_html_()
     assert "<script>" not in page and "&lt;script&gt;" in page
+
+
+def test_pictures_are_shown_without_pyplot(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    shell = SimpleNamespace(kernel=object())
+    tools = SimpleNamespace(select_figure_formats=lambda *told: asked.append(told))
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    monkeypatch.setitem(sys.modules, "IPython.core.pylabtools", tools)
+    show_in_notebooks()
+    assert asked == [(shell, {"png"})]
+    del shell.kernel  # a terminal
+    show_in_notebooks()
+    assert len(asked) == 1
