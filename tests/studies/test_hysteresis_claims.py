@@ -8,13 +8,18 @@ import numpy as np
 import pytest
 
 from torsional.components import Component, Coupling, Inertia, Shaft
+from torsional.files.scenario import load_scenario
 from torsional.laws import Jenkins
+from torsional.model import Model
 from torsional.powertrain import Powertrain
 from torsional.solvers.hysteresis import hysteresis
 from torsional.studies.answers import mean_torque
 from torsional.studies.base import Outcome
-from torsional.studies.claims.arc_losses import PARTLY, WHOLLY, driven, looped
+from torsional.studies.claims import arc_losses
+from torsional.studies.claims.arc_losses import PARTLY, WHOLLY, driven, looped, rubbed
 from torsional.studies.claims.hysteresis import long_arcs, truck_loops
+from torsional.studies.scenarios.kinds import planned
+from torsional.studies.scenarios.running import run_plan
 from torsional.studies.trucks import Trucks, hinged
 from torsional.system import assemble
 from torsional.units import RPM
@@ -90,7 +95,9 @@ def test_loss_rises_with_the_square_of_speed_at_large_sweeps(outcomes: Mapping[s
 
 def test_start_up_is_soft_and_loses_energy_but_not_over_what_is_stored(outcomes: Mapping[str, Outcome]) -> None:
     finding = outcomes["F4"].finding
-    assert not finding.reproduced and "softer and losing more energy a vibration" in finding.reason
+    assert (
+        not finding.reproduced and "softer" in finding.reason and "more energy from every vibration" in finding.reason
+    )
     told = {name: np.array(value, dtype=float) for name, value in finding.figures.items()}
     assert told["start-up: loss per vibration [J]"].min() > 3 * told["driving: loss per vibration [J]"].max()
     for name in ("loss factor [-]", "viscous coefficient of the same loss [Nms/rad]"):
@@ -102,6 +109,30 @@ def test_start_up_is_soft_and_loses_energy_but_not_over_what_is_stored(outcomes:
         )
         assert losses[0] > losses[1] and factors[0] < factors[1]
     assert np.diff(told["the same: loss factor [-]"]) > 0
-    assert (np.diff(told["driving at 1800 rpm, ±0.1, 0.03, 0.01°: loss factor [-]"]) < 0).all()
-    torque = told["engine start, friction times 0.02, 1, 2: largest torque passed on [Nm]"]
-    assert (np.diff(torque) < 0).all() and torque[2] > 0.8 * torque[0]
+    assert (np.diff(told["driving at 1800 rpm, ±0.1, 0.01°: loss factor [-]"]) < 0).all()
+    assert 0 < float(finding.figures["loss factor, lowest at start-up over highest in driving [-]"]) < 1  # type: ignore[arg-type]
+
+
+def test_loops_and_runs_are_fine_enough(trucks: Trucks, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four times the samples, half the step and longer runs tell the same within what the module says."""
+    coarse = looped(trucks.arc_spring, 200.0, np.radians(10.0))
+    motion = driven(trucks.arc_spring, 1400.0, 0.6)
+    monkeypatch.setattr(arc_losses, "SAMPLES", 4 * arc_losses.SAMPLES)
+    monkeypatch.setattr(arc_losses, "STEP", 0.5 * arc_losses.STEP)
+    monkeypatch.setattr(arc_losses, "LASTING", 1.0)
+    fine, longer = looped(trucks.arc_spring, 200.0, np.radians(10.0)), driven(trucks.arc_spring, 1400.0, 0.6)
+    assert coarse.loss == pytest.approx(fine.loss, rel=0.01) and coarse.loss != fine.loss
+    assert motion.swing == pytest.approx(longer.swing, rel=3e-3)
+    assert motion.power == pytest.approx(longer.power, rel=5e-3)
+
+
+def test_friction_takes_little_from_an_engine_start(trucks: Trucks) -> None:
+    """A hundred times the friction takes a fifth of the torque that is passed on."""
+    torque = [_passed_on(rubbed(trucks.arc_spring, times)) for times in (0.02, 2.0)]
+    assert 0.8 * torque[0] > 0.8 * torque[1] > 0.6 * torque[0]
+
+
+def _passed_on(model: Model) -> float:
+    """The largest torque [Nm] of the clutch in an engine start in neutral."""
+    run = run_plan(planned(load_scenario("engine_start", ["duration=1.5 s", "firing_from=0.65 s"]), model))
+    return float(np.abs(run.torque.sel(element=model.landmarks.clutch).values).max())

@@ -1,9 +1,12 @@
 """Pictures: one function a picture, from a Dataset or DataArray to a matplotlib Figure."""
 
+from torsional.plots.arcs import plot_arc_friction, plot_arc_losses
 from torsional.plots.branches import plot_branches
 from torsional.plots.campbell import plot_campbell, plot_resonance_speeds
 from torsional.plots.chain import plot_chain
+from torsional.plots.claims import plot_design_maps, plot_gear_ratios, plot_work_precision
 from torsional.plots.cycle import plot_cycle
+from torsional.plots.doubling import plot_doubling, plot_regression
 from torsional.plots.engine import plot_engine_orders, plot_full_load
 from torsional.plots.hysteresis import plot_hysteresis, plot_hysteresis_loops
 from torsional.plots.maps import plot_map, plot_ratio_map
@@ -20,14 +23,19 @@ from torsional.plots.transient import plot_transient
 
 __all__ = [
     "panels",
+    "plot_arc_friction",
+    "plot_arc_losses",
     "plot_branches",
     "plot_campbell",
     "plot_chain",
     "plot_characteristic",
     "plot_cycle",
+    "plot_design_maps",
+    "plot_doubling",
     "plot_energy_shares",
     "plot_engine_orders",
     "plot_full_load",
+    "plot_gear_ratios",
     "plot_gears",
     "plot_hysteresis",
     "plot_hysteresis_loops",
@@ -38,6 +46,7 @@ __all__ = [
     "plot_periodic",
     "plot_ratio_map",
     "plot_region",
+    "plot_regression",
     "plot_resonance_speeds",
     "plot_scenario",
     "plot_signals",
@@ -45,6 +54,7 @@ __all__ = [
     "plot_sweep",
     "plot_transient",
     "plot_travel",
+    "plot_work_precision",
     "save_png",
     "save_svg",
 ]

@@ -25,6 +25,8 @@ MARKED = 26
 MARKERS = "osD^v*<>"
 WIDTH, HEIGHT, LONE = 8.6, 2.4, 3.6
 """Size of the picture and of its panels [inch]; height of one that stands alone."""
+SHORT = 0.05
+"""Times below it [s] are told in milliseconds."""
 WRAP = 29
 """Letters of a line of an axis label or a legend."""
 
@@ -74,7 +76,7 @@ def draw_curves(axes: Axes, data: xr.Dataset, along: str, curves: Sequence[str])
     first = data[curves[0]].attrs
     if all(data[name].attrs.get("scale") == "log" for name in curves):
         axes.set_yscale("log")
-        _plain_decades(axes.yaxis)
+        plain_decades(axes.yaxis)
     _from_zero(axes, [style.shown(data[name]) for name in curves])
     _limits(axes, [data[name] for name in curves])
     _beyond(axes, x, [data[name] for name in curves])
@@ -85,8 +87,15 @@ def draw_curves(axes: Axes, data: xr.Dataset, along: str, curves: Sequence[str])
 
 
 def positions(along: xr.DataArray) -> Array:
-    """Places on the axis: values in the shown unit, or the numbers of names."""
-    return style.shown(along) if along.dtype.kind == "f" else np.arange(along.size, dtype=float)
+    """Places on the axis: values in the shown unit (short times in ms), or the numbers of names."""
+    if along.dtype.kind != "f":
+        return np.arange(along.size, dtype=float)
+    return style.shown(along) * (1e3 if _short(along) else 1.0)
+
+
+def _short(along: xr.DataArray) -> bool:
+    """Whether times are told in milliseconds."""
+    return bool(along.attrs.get("quantity") == "time" and along.values.max() < SHORT)
 
 
 def amplitude(data: xr.Dataset, name: str) -> str:
@@ -144,17 +153,23 @@ def _limits(axes: Axes, curves: Sequence[xr.DataArray]) -> None:
     """Dashed lines, each in the colour of its curve where there are several."""
     several = sum("limit" in curve.attrs for curve in curves) > 1
     for number, curve in enumerate(curves):
-        if "limit" in curve.attrs:
-            colour = style.COLOURS[number % len(style.COLOURS)] if several else LIMIT
-            at = float(style.shown(np.asarray(curve.attrs["limit"]), str(curve.attrs["quantity"])))
-            told = wrapped(str(curve.attrs.get("limit_words", "limit")))
-            low, high = axes.get_ylim()
+        colour = style.COLOURS[number % len(style.COLOURS)] if several else LIMIT
+        told = wrapped(str(curve.attrs.get("limit_words", "limit")))
+        limits = np.atleast_1d(np.asarray(curve.attrs.get("limit", ()), dtype=float))
+        for at in style.shown(limits, str(curve.attrs["quantity"])) if limits.size else ():
             axes.axhline(at, color=colour, linestyle=(0, (5, 2)), linewidth=1.2, label=told, gid="limit", zorder=1.5)
-            if axes.get_yscale() == "log":
-                axes.set_ylim(min(low, at / 1.3), max(high, at * 1.3))
-            else:
-                room = 0.06 * (max(high, at) - min(low, at))
-                axes.set_ylim(low if low < at else at - room, high if high > at else at + room)
+            _room_for(axes, float(at))
+            told = "_again"
+
+
+def _room_for(axes: Axes, at: float) -> None:
+    """The axis wide enough for a limit to be seen."""
+    low, high = axes.get_ylim()
+    if axes.get_yscale() == "log":
+        axes.set_ylim(min(low, at / 1.3), max(high, at * 1.3))
+    else:
+        room = 0.06 * (max(high, at) - min(low, at))
+        axes.set_ylim(low if low < at else at - room, high if high > at else at + room)
 
 
 def _beyond(axes: Axes, x: Array, curves: Sequence[xr.DataArray]) -> None:
@@ -162,7 +177,7 @@ def _beyond(axes: Axes, x: Array, curves: Sequence[xr.DataArray]) -> None:
     for number, curve in enumerate(curves):
         at = x[np.isposinf(curve.values)]
         if at.size:
-            top = np.full(at.size, 0.94)
+            top = np.full(at.size, 0.94 - 0.09 * number)
             look: dict[str, Any] = {"linestyle": "none", "marker": r"$\uparrow$", "markersize": 9.0, "gid": "beyond"}
             colour = style.COLOURS[number % len(style.COLOURS)]
             axes.plot(at, top, transform=axes.get_xaxis_transform(), color=colour, **look)
@@ -203,7 +218,7 @@ def _is_curve(handle: Any) -> bool:
     return bool(artist.get_gid() == "curve") if hasattr(artist, "get_gid") else False
 
 
-def _plain_decades(axis: Axis) -> None:
+def plain_decades(axis: Axis) -> None:
     """Plain numbers at 1, 2 and 5 of every decade, or at 1 where there are many."""
     low, high = axis.get_view_interval()
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 1000 * low else (1.0,)))
@@ -230,12 +245,13 @@ def _label_along(drawn: Sequence[Axes], along: xr.DataArray) -> None:
     words = str(told.get("words", ""))
     if along.dtype.kind == "f":
         x = positions(along)
-        last.set_xlabel(axis_label(str(told.get("quantity", "")), "", words))
+        last.set_xlabel(f"{words} [ms]" if _short(along) else axis_label(str(told.get("quantity", "")), "", words))
         if told.get("scale") == "log":
             last.set_xscale("log")
-            _plain_decades(last.xaxis)
+            plain_decades(last.xaxis)
             if x.size <= MARKED / 2:
-                last.set_xticks(x, [f"{value:.3g}" for value in x], minor=False)
+                apart = np.append(True, np.diff(np.log(x)) > 0.05 * np.log(x.max() / x.min()))
+                last.set_xticks(x[apart], [f"{value:.3g}" for value in x[apart]], minor=False)
         elif x.size > MARKED:
             last.set_xlim(x.min(), x.max())
         return

@@ -34,7 +34,7 @@ class Curve:
     words: str = ""
     panel: str = ""
     amplitude: str = ""
-    limit: float | None = None
+    limit: float | tuple[float, ...] | None = None
     limit_words: str = ""
     points: bool = False
     scale: str = ""
@@ -44,7 +44,7 @@ class Curve:
         """What the picture must know, as attributes."""
         every = {name: getattr(self, name) for name in ("words", "panel", "amplitude", "limit_words", "scale")}
         found: dict[str, object] = {name: text for name, text in every.items() if text}
-        found |= {} if self.limit is None else {"limit": float(self.limit)}
+        found |= {} if self.limit is None else {"limit": np.asarray(self.limit, dtype=float).tolist()}
         return found | ({"points": 1} if self.points else {})
 
 

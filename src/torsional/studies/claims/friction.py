@@ -5,13 +5,16 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+import xarray as xr
 
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.studies.answers import at_input, falling, floats, main_order, mean_torque, rising, sweep
+from torsional.studies.answers import at_input, falling, floats, main_order, mean_torque, rising
 from torsional.studies.base import Figure, Finding, claim, shown
 from torsional.studies.friction import ORDERS, Curve, answered, least_torque, washed
 from torsional.studies.settling import Stepped
+from torsional.studies.swept import Along, swept
+from torsional.studies.swept import Curve as Drawn
 from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
@@ -75,6 +78,25 @@ def balanced(one: Curve) -> Array:
     return np.array([one.peak[0], far, one.at(one.peak[1], one.power), far_power])
 
 
+FRICTION = Along("friction_torque", SWEEP, "torque", "friction torque of the washer")
+
+
+def _both_ways(told: Array, steps: Array) -> dict[str, Drawn]:
+    """What `NAMES` tell over friction, by harmonic balance and, where asked, by time steps."""
+    curves, asked = dict[str, Drawn](), np.isin(SWEEP, TIMED)
+    panels = ("gearbox input at the resonance", "gearbox input at 1500 rpm", "mean friction power")
+    for place, (name, panel) in enumerate(zip(("peak", "far", "power"), panels, strict=True)):
+        kind = "power" if name == "power" else "acceleration"
+        panel, half = (panel, "") if name == "power" else (f"{panel}, acceleration", "half peak-to-peak")
+        timed = np.full(SWEEP.size, np.nan)
+        timed[asked] = steps[:, place]
+        at = ", at the resonance" if name == "power" else ""
+        curves[name] = Drawn(told[:, place], kind, f"harmonic balance{at}", panel, half)
+        curves[f"{name}_timed"] = Drawn(timed, kind, f"time steps{at}", panel, half, points=True)
+    curves["far_power"] = Drawn(told[:, 3], "power", "harmonic balance, at 1500 rpm", panels[2])
+    return curves
+
+
 @claim(
     "A5",
     "2.1",
@@ -83,6 +105,8 @@ def balanced(one: Curve) -> Array:
     "over a sweep of the washer's friction torque the largest amplitude falls strictly, the amplitude at 1500 rpm "
     "rises strictly, and the friction power at the resonance is positive and rises strictly; runs by time steps at "
     "three of the friction torques tell the same within 3 %",
+    varies="friction torque of the washer from 10 to 150 Nm in six steps",
+    leading="largest amplitude, most over least friction [-]",
     trucks=60,
 )
 def a5(trucks: Trucks) -> Finding:
@@ -101,11 +125,10 @@ def a5(trucks: Trucks) -> Finding:
         "by time steps: friction torque [Nm]": TIMED,
         **{f"by time steps: {name}": floats(values) for name, values in zip(NAMES, steps.T, strict=True)},
         "by time steps: largest difference [%]": float(100 * off.max()),
+        "largest amplitude, most over least friction [-]": float(told[-1, 0] / told[0, 0]),
     }
     good = all(_as_said(values) for values in (told, steps)) and bool(off.max() < ALIKE)
-    peak, far, power, _ = told.T
-    values = {"peak": (peak, "acceleration"), "far": (far, "acceleration"), "power": (power, "power")}
-    data = sweep("A5", "friction_torque", SWEEP, "torque", **values)
+    data = swept("A5", FRICTION, _both_ways(told, steps))
     return Finding(good, f"{CONDITION}; viscous damping as shipped beside it", figures, MECHANISM, data)
 
 
@@ -132,22 +155,45 @@ def needed(model: Model, limit: float, viscous: float) -> float:
     "is needed than for the resonance with a single mass flywheel.",
     "friction torque that brings the largest amplitude about the resonance under common limits: smaller with the dual "
     "mass flywheel for every limit, in a clutch that relies on its washer",
+    varies="amplitude that the resonance may have, 1200 to 3500 rad/s² in six steps; viscous damping × 0.2 and × 1",
+    leading="friction needed, DMF over SMF, largest [-]",
     trucks=40,
 )
 def a9(trucks: Trucks) -> Finding:
     figures: dict[str, Figure] = {}
-    good = True
+    good, share, asked = True, [0.0], dict[tuple[str, float], dict[float, float]]()
     for viscous, limits in ((LIGHT, LIMITS), (LIGHT, HIGHER), (1.0, HIGHER)):
         torques = {name: [needed(m, limit, viscous) for limit in limits] for name, m in _pair(trucks).items()}
         label = f"viscous damping × {viscous:g}, limits {', '.join(f'{limit:g}' for limit in limits)} rad/s²"
         figures |= {f"{label}: {name} [Nm]": tuple(map(_told, found)) for name, found in torques.items()}
         good &= all(double < single for single, double in zip(*torques.values(), strict=True))
+        share += [
+            double / min(single, MOST) if single else 1.0 for single, double in zip(*torques.values(), strict=True)
+        ]
+        for name, found in torques.items():
+            asked.setdefault((name, viscous), {}).update(zip(limits, found, strict=True))
+    figures["friction needed, DMF over SMF, largest [-]"] = float(max(share))
     bare = {name: peak(m, LEAST, LIGHT) for name, m in _pair(trucks).items()}
     figures |= {f"viscous damping × {LIGHT:g}: {name} with {LEAST:g} Nm [rad/s²]": p for name, (p, _) in bare.items()}
     figures |= {f"viscous damping × {LIGHT:g}: {name} at [rpm]": at / RPM for name, (_, at) in bare.items()}
     best = peak(trucks.smf, MOST, LIGHT)[0]
     figures[f"viscous damping × {LIGHT:g}: SMF with {MOST:g} Nm [rad/s²]"] = best
-    return Finding(good, CONDITION, figures, UNREACHED if best > max(LIMITS) else "")
+    return Finding(good, CONDITION, figures, UNREACHED if best > max(LIMITS) else "", _over_limits(asked))
+
+
+def _over_limits(asked: dict[tuple[str, float], dict[float, float]]) -> xr.Dataset:
+    """Friction needed over the limit, of both flywheels; infinite where the most does not do."""
+    limits = np.array(sorted({*LIMITS, *HIGHER}))
+    curves = {
+        f"{name}_{100 * viscous:.0f}".lower(): Drawn(
+            [found.get(limit, np.nan) for limit in limits],
+            "torque",
+            f"{name}, viscous damping × {viscous:g}",
+            f"friction torque needed (arrow: more than {MOST:g} Nm)",
+        )
+        for (name, viscous), found in asked.items()
+    }
+    return swept("A9", Along("limit", limits, "acceleration", "limit at the resonance, half peak-to-peak"), curves)
 
 
 def _told(torque: float) -> str:

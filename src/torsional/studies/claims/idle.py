@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,7 +15,6 @@ from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.numerics.piecewise.motion import PiecewiseMotion, Trajectory
-from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response
 from torsional.solvers.periodic.equations import Split
 from torsional.solvers.periodic.stability import stage_bases
@@ -22,6 +22,7 @@ from torsional.solvers.transient import TorqueHistory
 from torsional.studies.answers import floats, main_order
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.settling import Stepped, reach_of, swing_of
+from torsional.studies.swept import Along, Curve, swept
 from torsional.studies.trucks import Trucks, hinged, reached, replaced, stiffness, within
 from torsional.system import System, assemble
 
@@ -133,6 +134,8 @@ def _excited(model: Model) -> Excitation:
     "the gearbox input swings by less than a quarter of the crankshaft; after it the springs keep being met, the "
     "motion repeats itself after two periods of the firing or more, and the input swings at least twice as much as "
     "before",
+    varies="time, before and long after a torque pulse; lash 1.5° to 6° and damping 20, 10, 5 Nms/rad for the region",
+    leading="swing of the input, after over before [-]",
     trucks=40,
 )
 def b6(trucks: Trucks) -> Finding:
@@ -149,6 +152,7 @@ def b6(trucks: Trucks) -> Finding:
         "before: DMF twist [deg]": floats(np.rad2deg([idle.twist(before).min(), idle.twist(before).max()])),
         "before: crankshaft and input speed [rad/s]": (idle.swing(before, marks.crankshaft), quiet),
     }
+    figures["swing of the input, after over before [-]"] = 1.0
     good = len(start.times) == 1 and quiet < 0.25 * idle.swing(before, marks.crankshaft)
     if np.isfinite(torque):
         end = idle.pushed(start.state, torque)
@@ -159,6 +163,7 @@ def b6(trucks: Trucks) -> Finding:
             "after: DMF twist [deg]": floats(np.rad2deg([idle.twist(after).min(), idle.twist(after).max()])),
             "after: crankshaft and input speed [rad/s]": (idle.swing(after, marks.crankshaft), loud),
             "after: order of the slowest part [-]": main_order(model) / count if count else np.nan,
+            "swing of the input, after over before [-]": loud / quiet,
         }
         steps = pulsed(idle, torque)
         figures |= {f"by time steps, {name}": value for name, value in told(idle, *steps).items()}
@@ -215,6 +220,23 @@ def _reason(region: dict[float, list[float]]) -> str:
 
 
 def _drawn(idle: Idle, before: Trajectory, after: Trajectory | None) -> xr.Dataset:
-    told = {"before": before} | ({"after": after} if after is not None else {})
-    values = {name: (("time",), idle.twist(motion), "relative_angle") for name, motion in told.items()}
-    return labelled(values, {"time": (before.times, "time")}, analysis="claim B6")
+    """Twist of the DMF with the ends of its lash, and the speed of the input about its mean, before and after."""
+    told, curves = {"before": before} | ({"after": after} if after is not None else {}), dict[str, Curve]()
+    words = {"before": "before the pulse", "after": "long after it"}
+    lash: dict[str, Any] = {"limit": (-idle.lash / 2, idle.lash / 2), "limit_words": "ends of the lash"}
+    times = before.times - before.times[0]
+    row = idle.system.T[idle.system.node_index(idle.model.landmarks.input)]
+    for name, motion in told.items():
+        twist, more = _at(idle.twist(motion), motion, times), lash if name == "before" else {}
+        curves[f"twist_{name}"] = Curve(twist, "relative_angle", words[name], "twist of the DMF", **more)
+    for name, motion in told.items():
+        speed = _at(motion.rates @ row, motion, times)
+        curves[f"input_{name}"] = Curve(
+            speed - speed.mean(), "angular_velocity", words[name], "speed of the gearbox input about its mean"
+        )
+    return swept("B6", Along("time", times, "time", "time, over some periods of the firing"), curves)
+
+
+def _at(values: Array, motion: Trajectory, times: Array) -> Array:
+    """Values at other times from the start of a motion."""
+    return np.asarray(np.interp(times, motion.times - motion.times[0], values))
