@@ -44,7 +44,13 @@ def plot_gear_ratios(data: xr.Dataset) -> Figure:
         _colour_bar(figure, mesh, list(line), ticks, "dual over single mass\nflywheel [-]")
     for axes in grid[-1]:
         axes.set_xlabel(style.label("speed", name="engine speed"))
+    _explained(figure, "× above one; grey: above full load")
     return figure
+
+
+def _explained(figure: Figure, words: str) -> None:
+    """A line above all panels."""
+    figure.suptitle(words, fontsize=8.0, fontweight="normal", color=style.INK)
 
 
 def _chosen(data: xr.Dataset) -> list[str]:
@@ -114,6 +120,7 @@ def plot_design_maps(data: xr.Dataset) -> Figure:
     ticks = SERIES[(0.999 * low <= SERIES) & (1.001 * high >= SERIES)]
     _colour_bar(figure, mesh, drawn, ticks, "gearbox input, acceleration\n[rad/s²], half peak-to-peak")
     _over_torque(figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:]), data)
+    _explained(figure, "grey: above full load, or no stable motion of these orders")
     return figure
 
 

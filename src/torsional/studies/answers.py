@@ -183,18 +183,6 @@ def curves(id: str, speed: Array, quantity: str, **values: ArrayLike) -> xr.Data
     return labelled(told, {"speed": (speed, "speed")}, analysis=f"claim {id}", amplitude="half peak-to-peak")
 
 
-def sweep(id: str, over: str, at: ArrayLike, quantity: str, **values: tuple[ArrayLike, str]) -> xr.Dataset:
-    """Values over a swept parameter ``over`` of some ``quantity``, one variable each with its own quantity."""
-    told = {name: ((over,), np.asarray(value), kind) for name, (value, kind) in values.items()}
-    return labelled(told, {over: (np.asarray(at, dtype=float), quantity)}, analysis=f"claim {id}")
-
-
-def by_gear_dataset(id: str, model: Model, **values: tuple[ArrayLike, str]) -> xr.Dataset:
-    """Values for every gear, one variable each with its quantity."""
-    told = {name: (("gear",), np.asarray(value), kind) for name, (value, kind) in values.items()}
-    return labelled(told, {"gear": (np.array(model.gear_names), "")}, analysis=f"claim {id}", model=model.name)
-
-
 def floats(values: ArrayLike) -> tuple[float, ...]:
     """An array as figures."""
     return tuple(float(value) for value in np.ravel(np.asarray(values)))
