@@ -140,7 +140,7 @@ def _drawn(every: Mapping[str, Sequence[Run]]) -> xr.Dataset:
         {
             "method": (("run",), np.array([method for method, _ in runs]), ""),
             "error": (("run",), np.array([run.error for _, run in runs]), "relative_difference"),
-            "accuracy": (("run",), np.array([run.accuracy for _, run in runs]), ""),
+            "accuracy": (("run",), np.array([run.accuracy for _, run in runs]), "number"),
             "work": (("run",), np.array([run.work for _, run in runs]), "number"),
             "cpu_time": (("run",), np.array([run.seconds for _, run in runs]), "time"),
         },
@@ -149,4 +149,5 @@ def _drawn(every: Mapping[str, Sequence[Run]]) -> xr.Dataset:
         ours=OURS,
     )
     data.cpu_time.attrs["measured"] = 1
+    data.accuracy.attrs["long_name"] = "tolerance of an integrator, or time step in seconds"
     return data
