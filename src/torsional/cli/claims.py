@@ -46,7 +46,8 @@ def run(
             trucks_of(model), chosen, many=0 if quick else trucks, processes=processes or None, progress=moved
         )
     text = json_text(document(found, model))
-    written({output: lambda draft: write_claims(found, model, draft), beside: text_writer(text)})
+    written({beside: text_writer(text)})  # first: no picture that fails shall cost a quarter of an hour's work
+    written({output: lambda draft: write_claims(found, model, draft)})
     if as_json:
         print_json(text)
     elif not quiet:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 
-from torsional.report.blocks import Block, Heading, Items, Picture, Section, Table, Text, picture
+from torsional.errors import ModelError
+from torsional.report.blocks import Block, Heading, Items, Section, Table, Text, picture
 from torsional.report.claims.robustness import robustness_blocks, share_told, turned_by, turning_picture
 from torsional.studies.asking import Asked
 from torsional.studies.base import Figure, Finding, Outcome, Study, shown
@@ -121,13 +121,16 @@ def _readable(value: Figure) -> str:
     return shown(value).replace("_", " ")
 
 
-def drawn(study: Study, finding: Finding) -> Sequence[Picture]:
-    """The picture of a finding that has something to draw."""
+def drawn(study: Study, finding: Finding) -> list[Block]:
+    """The picture of a finding that has something to draw; where it cannot be drawn, why."""
     from torsional.plots.sweeps import plot_sweep
 
     if finding.dataset is None:
         return []
-    figure = (study.picture or plot_sweep)(finding.dataset)
+    try:
+        figure = (study.picture or plot_sweep)(finding.dataset)
+    except ModelError as error:
+        return [Text(f"No picture: {error}.", "warning")]
     caption = f"{study.claim.id}: {_sentence(study.varies or study.claim.criterion)}"
     return [picture(figure, caption, f"Picture of claim {study.claim.id}: {study.claim.criterion}.")]
 
