@@ -247,6 +247,15 @@ class TestAsked:
         assert [(turn.parameter, turn.factor) for turn in told.turns] == [("TVA tuning speed", 0.8)]
         assert told.alone == 6 and told.asked == 2
 
+    @pytest.mark.usefixtures("smaller")
+    def test_a_dear_claim_is_asked_of_fewer_and_of_none_with_one_other_parameter(
+        self, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        study = dataclasses.replace(claims()["D1"], trucks=2)
+        monkeypatch.setattr(asking, "claims", lambda: {"D1": study})
+        told = asked(TRUCKS, many=4, processes=1).robustness["D1"]
+        assert (told.asked, told.alone, told.turns) == (2, 0, ())
+
     def test_without_other_trucks_there_are_outcomes_alone(self) -> None:
         found = asked(TRUCKS, ["A6"], many=0, processes=1)
         assert list(found.outcomes) == ["A6"] and not found.robustness and not found.parameters

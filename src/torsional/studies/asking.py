@@ -124,7 +124,7 @@ def _replies(
     first = tuple(id for id in studies if id in COMPILING)
     single = [Piece(None, (id,)) for id in sorted(set(studies) - set(first), key=lambda id: (fewest[id], id))]
     together = [Piece(n, tuple(id for id in studies if n < fewest[id])) for n in range(max(fewest.values(), default=0))]
-    lone = [id for id in studies if fewest[id] >= min(ENOUGH, samples.many) and fewest[id]]
+    lone = [id for id, study in studies.items() if study.trucks >= ENOUGH and samples.many]
     total = len(studies) + sum(fewest.values()) + len(lone) * (len(samples) - samples.many)
     found: list[Reply] = []
     with Workers(_answered, _prepare, given, processes) as workers:
@@ -152,7 +152,7 @@ def _alone(ids: list[str], found: list[Reply], samples: Samples) -> list[Piece]:
 
 def _robustness(study: Study, base: Answer, replies: list[Reply], samples: Samples) -> Robustness:
     answers = {each.number: each.answer for each in replies if each.id == study.name and each.number is not None}
-    if min(study.trucks, samples.many) >= min(ENOUGH, samples.many) and study.trucks:
+    if study.trucks >= ENOUGH:
         answers = dict.fromkeys(range(samples.many, len(samples)), base) | answers
     return judged(study.name, base, answers, samples, study.leading)
 
