@@ -17,11 +17,11 @@ IDS = [
     *(f"C{n}" for n in range(1, 7)),
     *(f"D{n}" for n in range(1, 5)),
     *(f"E{n}" for n in range(1, 3)),
-    *("F3", "F4"),
+    *(f"F{n}" for n in range(1, 5)),
     *(f"G{n}" for n in range(1, 5)),
 ]
 NOT_REPRODUCED = {"A1", "A13", "F4"}
-WITH_A_CONDITION = {"A3", "D2", "E2", "G2"}
+WITH_A_CONDITION = {"A3", "D2", "E2", "F1", "F2", "G2"}
 
 
 def test_every_claim_is_there() -> None:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -21,12 +19,9 @@ from torsional.numerics.quasi_static.loops import (
     loss_per_cycle,
     secant_stiffness,
 )
-from torsional.numerics.quasi_static.march import march
-from torsional.numerics.quasi_static.torques import work_for
 from torsional.results import dataset
 from torsional.solvers.hysteresis.bench import Bench, on_bench
-from torsional.solvers.hysteresis.parts import parts_of
-from torsional.solvers.transient.arrays import connected
+from torsional.solvers.hysteresis.courses import Course, Run, mounted, run
 from torsional.system import BoolArray, Connections, System, assemble
 
 RATE = np.radians(3.0)
@@ -35,12 +30,8 @@ SAMPLES = 720
 """Steps of one cycle."""
 CYCLES = 10
 """Cycles after which a loop that does not close is taken as it is."""
-MISS = 5e-4
-"""Share of the sweep by which a part may miss where its pace led before the step is shortened."""
 CLOSED = 1e-4
 """What the torque of two cycles may differ by, over the largest."""
-SAME = 1e-6
-"""What torques of all elements may differ by where a cycle begins and ends, over the largest: it then repeats."""
 NOTHING = 1e-5
 """Share of the largest torque of all loops below which there is none to speak of."""
 MOVES = 0.01
@@ -86,9 +77,11 @@ def hysteresis(
     speeds, sweeps = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speed, sweep))
     _checked(speeds, sweeps, rate, samples)
     bench = on_bench(system, turned, held)
+    parts = mounted(bench)
     runs: list[list[Run]] = []
     for done, w in enumerate(speeds):
-        runs.append([_run(bench, w, a, rate, centre, samples) for a in sweeps])
+        courses = (_course(w, a, rate, centre, samples) for a in sweeps)
+        runs.append([run(bench, parts, course, most=CYCLES, closed=CLOSED) for course in courses])
         if progress:
             progress(done + 1, len(speeds))
     return _told(bench, runs, speeds, sweeps, (turned, held), rate=rate, centre=centre)
@@ -143,17 +136,6 @@ def _checked(speeds: Array, sweeps: Array, rate: float, samples: int) -> None:
         raise ModelError("a cycle has four equal parts", where="samples", found=str(samples), allowed="8, 12, 16, …")
 
 
-class Run(NamedTuple):
-    """Places, torques and loads (samples, …) of the first and of the closed cycle; how many cycles it took, and by
-    what the last two differ, over the largest torque."""
-
-    place: Array
-    torque: Array
-    load: Array
-    cycles: int
-    closure: float
-
-
 def swept(sweep: float, centre: float, samples: int) -> Array:
     """One cycle of the angle [rad] as a triangle, up first, its start left out.
 
@@ -166,52 +148,8 @@ def swept(sweep: float, centre: float, samples: int) -> Array:
     return np.asarray(centre + corners[0] + (corners[1] - corners[0]) * share)
 
 
-def _run(bench: Bench, speed: float, sweep: float, rate: float, centre: float, samples: int) -> Run:
-    """Every part from rest to the centre, then to and fro until a cycle repeats the one before."""
-    count, width = bench.system.connections.weights.shape
-    place, torque, load = (np.zeros((2, samples, size)) for size in (width, count, count))
-    cycles, closure = 1, 0.0
-    place[..., -1] = swept(sweep, centre, samples)
-    for part in parts_of(bench.system.connections):
-        alone = dataclasses.replace(bench.system, connections=part.connections)
-        own = _part_run(alone, speed, sweep, rate, centre, samples)
-        for columns, elements in zip(part.columns, part.elements, strict=True):
-            place[..., columns], torque[..., elements], load[..., elements] = own.place[..., :-1], own.torque, own.load
-        cycles, closure = max(cycles, own.cycles), max(closure, own.closure)
-    return Run(place, torque, load, cycles, closure)
-
-
-def _part_run(system: System, speed: float, sweep: float, rate: float, centre: float, samples: int) -> Run:
-    c = connected(system, {load.level: -1 for load in system.connections.loads if load is not None})
-    weights = system.connections.weights
-    work = work_for(c, weights.shape[1], abs(centre) + sweep, MISS * sweep)
-    place, memory, step = np.zeros(weights.shape[1]), np.zeros(len(weights)), 4.0 * sweep / (rate * samples)
-
-    def along(drive: Array) -> tuple[Array, Array, Array]:
-        places, told = np.empty((drive.size, place.size)), np.empty((2, drive.size, memory.size))
-        lost = march(c, float(speed) ** 2, place, memory, drive, step, work, places, told)
-        if lost:
-            found = f"{lost} times in {drive.size} steps at a sweep of ±{np.degrees(sweep):g}°"
-            raise ModelError("the parts find no balance under the slow turn", where="hysteresis", found=found)
-        return places, told[0], told[1]
-
-    along(np.linspace(0.0, centre, 1 + int(np.ceil(abs(centre) / (rate * step)))))
-    drive = swept(sweep, centre, samples)
-    first = last = along(drive)
-    count, closure = 1, np.inf
-    while count < CYCLES and closure > CLOSED:
-        before, last, count = last, along(drive), count + 1
-        closure = _difference(before[1], last[1], weights[:, -1])
-    both = [np.stack(pair) for pair in zip(first, last, strict=True)]
-    return Run(both[0], both[1], both[2], count, closure)
-
-
-def _difference(before: Array, last: Array, drive: Array) -> float:
-    """By what two cycles differ, over the largest torque; nothing where all torques are at the end what they were."""
-    if np.abs(last[-1] - before[-1]).max() <= SAME * np.abs(last).max():
-        return 0.0
-    torque = last @ drive
-    return float(np.abs(torque - before @ drive).max() / np.abs(torque).max())
+def _course(speed: float, sweep: float, rate: float, centre: float, samples: int) -> Course:
+    return Course(speed, swept(sweep, centre, samples), 4.0 * sweep / (rate * samples), centre, sweep, rate)
 
 
 def _told(
