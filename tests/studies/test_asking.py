@@ -219,6 +219,15 @@ class TestVerdicts:
         name, difference = told.separates
         assert name == "stiffness" and difference > 2.0
 
+    def test_chance_separates_nothing(self) -> None:
+        names = tuple(f"parameter {number}" for number in range(50))
+        samples, found = Samples(names, 200), 0
+        for seed in range(40):
+            held = np.random.default_rng(seed).random(200) < 0.85
+            answers = {number: Answer(bool(one)) for number, one in enumerate(held)}
+            found += judged("X1", Answer(True), answers, samples, "").separates is not None
+        assert found <= 6  # 2 expected of 40
+
 
 @pytest.fixture
 def smaller(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,12 +8,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
 from torsional.studies.base import Figure, Outcome
 from torsional.studies.robustness.samples import Samples
 
 FEWEST = 5
 """Trucks of either verdict from which on it is told in which parameter they differ most."""
+CHANCE = 0.05
+"""Probability with which chance alone may name a parameter."""
 NORMAL = 1.959963984540054
 """Quantile of the normal distribution for an interval of 95 %."""
 
@@ -73,7 +76,7 @@ class Robustness:
     interval (Wilson) of the share on which it holds.  ``spread``: 5, 50, 95 % of the ``leading`` figure.  ``turns``:
     parameters whose ±20 % ``alone`` (so many trucks) turn the verdict.  ``reasons``: errors with their numbers.
     ``separates``: the parameter whose means differ most between trucks on which it holds and others, in standard
-    deviations, where there are five of each.
+    deviations, where there are five of each and chance would not do it.
     """
 
     id: str
@@ -142,11 +145,16 @@ def _quantiles(numbers: list[float]) -> tuple[float, float, float]:
 
 
 def _separating(held: list[int], others: list[int], samples: Samples) -> tuple[str, float] | None:
-    """The parameter with the largest standardised difference of means, positive where it is higher when it holds."""
+    """The parameter with the largest standardised difference of means, positive where it is higher when it holds.
+
+    None where chance alone would make one of them as large in one case of twenty.
+    """
     if min(len(held), len(others)) < FEWEST or not samples.parameters:
         return None
     pair = samples.together[held], samples.together[others]
     deviation = np.sqrt((pair[0].var(axis=0, ddof=1) + pair[1].var(axis=0, ddof=1)) / 2)
     difference = (pair[0].mean(axis=0) - pair[1].mean(axis=0)) / deviation
     place = int(np.argmax(np.abs(difference)))
-    return samples.parameters[place], float(difference[place])
+    # the largest of so many differences that nothing but chance makes (Bonferroni)
+    chance = ndtri(1 - CHANCE / 2 / len(samples.parameters)) * math.sqrt(1 / len(held) + 1 / len(others))
+    return (samples.parameters[place], float(difference[place])) if abs(difference[place]) > chance else None
