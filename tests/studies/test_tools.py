@@ -12,11 +12,14 @@ import xarray as xr
 from tests.shipped import shipped
 
 from torsional.errors import ModelError
+from torsional.files import changed
 from torsional.plots import save_png
 from torsional.studies.advice import values_of
 from torsional.studies.base import Outcome
+from torsional.studies.motions import SPRING
 from torsional.studies.power_split import Parts, cancelled
 from torsional.studies.register import tools
+from torsional.studies.strongest import Search
 from torsional.studies.tools.psva_design import planets
 from torsional.studies.tools.tva_design import needed_inertia
 from torsional.studies.trucks import Trucks, replaced
@@ -148,3 +151,50 @@ def test_clutch_friction_of_a_car(car: Trucks) -> None:
         asked("clutch-friction", car, far=50.0)
     with pytest.raises(ModelError, match="cannot be asked"):
         values_of((1.0, -1.0), 0.0, "torques")
+
+
+# --- start-up ---
+
+
+def test_start_up_tells_the_figures_of_the_claim(trucks: Trucks, outcomes: Mapping[str, Outcome]) -> None:
+    figures = outcomes["G2"].finding.figures
+    found = asked("start-up", trucks, varied="run-up-time", values=(0.1, 0.2, 0.8, 3.2))
+    told = figures["largest angle [deg], time from a third of idle to idle"]
+    assert np.degrees(found.angle.values)[::-1].tolist() == list(told)  # type: ignore[arg-type]
+    by_starter = asked("start-up", trucks, values=(150 * RPM, 350 * RPM))
+    told = figures["largest angle [deg], starter speed"]
+    assert np.degrees(by_starter.angle.values) == pytest.approx([told[0], told[-1]], rel=1e-6)  # type: ignore[index]
+
+
+def test_start_up_of_a_car(car: Trucks) -> None:
+    found = asked("start-up", car, varied="damping", values=(0.5, 8.0))
+    assert np.diff(found.angle.values) < 0
+    assert "yours, as it is" in found.attrs["condition"] or "scaled to yours" in found.attrs["condition"]
+    with pytest.raises(ModelError, match="no springs"):
+        asked("start-up", car, absorber="smf")
+    with pytest.raises(ModelError, match="no such choice"):
+        asked("start-up", car, varied="starter-torque")
+
+
+# --- stiffness-step ---
+
+
+def test_stiffness_step_finds_the_peaks_of_the_claims(trucks: Trucks) -> None:
+    """The same peak as the search of B2 to B4, which climbs from other speeds, and none for a small step."""
+    found = asked("stiffness-step", trucks, differences=(2e3, 16e3))
+    assert found.spring_torque.values[0] == 0 and np.isnan(found.strongest_at.values[0])
+    peak = Search(trucks.two_stage, 1.5).peak(SPRING)  # 8 and 24 kNm/rad as shipped
+    assert found.spring_torque.values[1] == pytest.approx(peak.amplitude, rel=1e-3)
+    assert found.strongest_at.values[1] == pytest.approx(peak.torque, rel=5e-3)
+    assert found.lowest_speed.values[1] < peak.speed < found.highest_speed.values[1]
+    assert "no vibration of order 1.5 up to a difference of 2 kNm/rad" in found.attrs["findings"]
+
+
+def test_stiffness_step_of_another_truck(car: Trucks) -> None:
+    """With four cylinders it is order 1, about twice the mode's order speeds."""
+    truck = Trucks.of(changed(shipped("truck_dmf"), "engine.layout=inline-4", "engine.firing_order=[1, 3, 4, 2]"))
+    found = asked("stiffness-step", truck, differences=(16e3, 20e3))
+    assert "order 1 has" in found.attrs["findings"]
+    assert (found.strongest_at.values > 1000.0).all()
+    with pytest.raises(ModelError, match="carries no torque"):
+        asked("stiffness-step", car)

@@ -11,7 +11,7 @@ import numpy as np
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.studies.answers import main_order
+from torsional.studies.answers import main_order, mode_of, modes
 from torsional.studies.motions import (
     INPUT_ACCELERATION,
     SHAFT,
@@ -37,6 +37,12 @@ def stages(model: Model) -> tuple[float, float]:
     """Stiffnesses [Nm/rad] before and after the transition of a two-stage model."""
     law = hinged(model, model.landmarks.springs[0])
     return float(law.tangent(0.0)), float(law.tangent(1.001 * law.nearest_edge))
+
+
+def mode_speed(model: Model) -> float:
+    """Order speed [rad/s] of the mode that lives in the springs of the DMF."""
+    found = modes(model)
+    return float(found.order_speed[mode_of(found, *model.landmarks.springs)])
 
 
 def transition_torque(model: Model) -> float:

@@ -38,18 +38,20 @@ class Search:
     """Largest amplitudes of half the firing order over speed and mean torque.
 
     At each speed branches are followed over the mean torque, through their folds, so that motions that are isolated
-    over speed are met too; over speed the largest is climbed to and taken
-    from parabolas.
+    over speed are met too; over speed the largest is climbed to and taken from parabolas.  ``torques``: mean torques
+    [Nm] between which it is looked for, ``first_look``: speeds [rad/s] from which it climbs.
     """
 
     model: Model
     order: float
+    torques: tuple[float, float] = TORQUES
+    first_look: Array = field(default_factory=lambda: FIRST_LOOK)
     seen: dict[float, Array] = field(default_factory=dict)
 
     def at(self, speed: float) -> Array:
         """Largest amplitudes of the quantities (4,) and their mean torques (4,) at one speed, as (2, 4)."""
         if speed not in self.seen:
-            explorer = over_torque(self.model, speed, TORQUES, highest_order=HIGHEST_ORDER)
+            explorer = over_torque(self.model, speed, self.torques, highest_order=HIGHEST_ORDER)
             best = np.zeros((2, 4))
             for branch in doubled(explorer):
                 found = _crests(branch, amplitudes(self.model, branch, self.order))
@@ -77,7 +79,7 @@ class Search:
 
     def _climbed(self, size: Callable[[float], float], near: float | None) -> float:
         """A speed that is higher than those a step below and above."""
-        top = near if near is not None and size(near) else max(map(float, FIRST_LOOK), key=size)
+        top = near if near is not None and size(near) else max(map(float, self.first_look), key=size)
         while max(size(top - STEP), size(top + STEP)) > size(top):
             top = max(top - STEP, top + STEP, key=size)
         return max((speed for speed in self.seen if abs(speed - top) <= STEP), key=size)

@@ -12,8 +12,9 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.harmonic import response
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.answers import INPUT, at_input, curves, floats, lowest, mean_torque, speeds
+from torsional.studies.answers import INPUT, at_input, floats, lowest, mean_torque, speeds
 from torsional.studies.base import Figure, Finding, claim
+from torsional.studies.swept import Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, joined, only, replaced, without
 from torsional.units import RPM
 
@@ -40,6 +41,8 @@ def quiet_order(model: Model, speed: float) -> float:
     "A centrifugal pendulum's tuning frequency is proportional to speed; it adds reduction to any concept.",
     "the order at which its carrier stands still is the same at every speed (to 1e-6); the amplitude with it is below "
     "that without it at every speed of the range, on the dual and on the single mass flywheel (linear)",
+    varies="engine speed over the operating range in steps of 10 rpm; with and without the pendulum",
+    leading="DMF: amplitude with over without, median [-]",
 )
 def g1(trucks: Trucks) -> Finding:
     speed, some = speeds(trucks.pendulum), np.linspace(*trucks.pendulum.operation.speed, 5)
@@ -55,7 +58,13 @@ def g1(trucks: Trucks) -> Finding:
         figures[f"{name.upper()}: amplitude with over without, largest [-]"] = float(values.max())
     constant = bool(np.abs(order / order[0] - 1).max() < 1e-6)
     good = constant and all(bool((values < 1).all()) for values in ratio.values())
-    return Finding(good, INPUT, figures, dataset=curves("G1", speed, "ratio", **ratio))
+    panel = "gearbox input, amplitude with the pendulum over that without"
+    limit = {"limit": 1.0, "limit_words": "criterion: below one"}
+    curves = {
+        name: Curve(values, "ratio", f"on the {name.upper()}", panel, **(limit if name == "dmf" else {}))  # type: ignore[arg-type]
+        for name, values in ratio.items()
+    }
+    return Finding(good, INPUT, figures, dataset=swept("G1", over_speed(speed), curves, trucks.pendulum))
 
 
 def _ratio(model: Model, speed: Array) -> Array:

@@ -10,7 +10,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
 from torsional.solvers.modal import natural_frequencies
-from torsional.studies.answers import floats, input_shaft, main_order, mode_of, modes
+from torsional.studies.answers import floats, input_shaft, main_order
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.claims.pictured import Line, branch_points, draw_motions, draw_peaks, peaks
 from torsional.studies.motions import (
@@ -28,7 +28,17 @@ from torsional.studies.motions import (
     twist_orders,
 )
 from torsional.studies.settling import Stepped, order_of
-from torsional.studies.stiffness_step import LIGHT, SOFT, Case, cases, stages, stepped, table, transition_torque
+from torsional.studies.stiffness_step import (
+    LIGHT,
+    SOFT,
+    Case,
+    cases,
+    mode_speed,
+    stages,
+    stepped,
+    table,
+    transition_torque,
+)
 from torsional.studies.strongest import TORQUES, Peak, Search, onset
 from torsional.studies.trucks import Trucks, reached, sprung, within
 from torsional.system import assemble
@@ -82,7 +92,7 @@ def b1(trucks: Trucks) -> Finding:
     at = {torque: doubled(explorer)[:1] for torque, explorer in every.items()}
     ends = {torque: (branch.values.min(), branch.values.max()) for torque, found in at.items() for branch in found}
     spring, order = model.landmarks.springs[0], main_order(model)
-    twice = [2 * _mode_speed(sprung(model, spring, k)) for k in stages(model)]
+    twice = [2 * mode_speed(sprung(model, spring, k)) for k in stages(model)]
     strongest = Search(model, order / 2).peak(SPRING)
     told = confirmed(model, strongest)
     figures: dict[str, Figure] = {
@@ -105,12 +115,6 @@ def b1(trucks: Trucks) -> Finding:
     condition = "two-stage DMF as shipped, top gear; order 1.5, 0-peak"
     good &= all(abs(size / told["balance"] - 1) < 0.02 for size in told.values())
     return Finding(bool(good), condition, figures, dataset=data)
-
-
-def _mode_speed(model: Model) -> float:
-    """Order speed [rad/s] of the mode that lives in the springs of the DMF."""
-    found = modes(model)
-    return float(found.order_speed[mode_of(found, *model.landmarks.springs)])
 
 
 def confirmed(model: Model, peak: Peak) -> dict[str, float]:
