@@ -132,9 +132,10 @@ def _findings(data: xr.Dataset, order: float) -> Iterator[str]:
         at = there.isel(difference=place)
         yield (
             f"difference {float(at.difference) / 1e3:.3g} kNm/rad: order {order:g} has "
-            f"{float(at.spring_torque):.0f} Nm in the springs, {float(at.input_torque):.0f} Nm and {float(at.input_acceleration):.0f} rad/s² at the "
-            f"gearbox input, at {float(at.speed_of_strongest) / RPM:.0f} rpm under {float(at.strongest_at):.0f} Nm; "
-            f"there from {float(at.lowest_speed) / RPM:.0f} to {float(at.highest_speed) / RPM:.0f} rpm"
+            f"{float(at.spring_torque):.0f} Nm in the springs, {float(at.input_torque):.0f} Nm and "
+            f"{float(at.input_acceleration):.0f} rad/s² at the gearbox input, at "
+            f"{float(at.speed_of_strongest) / RPM:.0f} rpm under {float(at.strongest_at):.0f} Nm; it lives from "
+            f"{float(at.lowest_speed) / RPM:.0f} to {float(at.highest_speed) / RPM:.0f} rpm there"
         )
     if there.difference.size > 1:
         slope, torque = (np.polyfit(there.difference / 1e3, there[n], 1)[0] for n in ("spring_torque", "strongest_at"))
