@@ -14,7 +14,7 @@ from torsional.files.scenario import load_scenario
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
-from torsional.results import labelled
+from torsional.results import Variable, labelled
 from torsional.solvers.modal import modal
 from torsional.solvers.transient.drives import Governor
 from torsional.solvers.transient.speed_profile import SpeedProfile
@@ -105,8 +105,8 @@ def run_up(model: Model, time: float) -> xr.Dataset:
     plan: Plan = planned(load_scenario("engine_stop", [f"step={STEP / 2:g} s"]), model)
     idle, scale = model.operation.idle, model.full_load_peak() / PEAK
     speed = SpeedProfile.ramp(idle / 3, idle, time, BEGIN)
-    gains = {"proportional": scale * HOLDING[0], "integral": scale * HOLDING[1]}
-    drive = Governor(plan.crank, speed, acts_on=plan.crank, **gains)
+    proportional, integral = (scale * gain for gain in HOLDING)
+    drive = Governor(plan.crank, speed, acts_on=plan.crank, proportional=proportional, integral=integral)
     motor = cylinders(model, MIDDLE, LOAD * model.full_load_peak(), ((0.0,), (1.0,)))
     return run_plan(dataclasses.replace(plan, drives=(motor, drive), speed=speed, duration=BEGIN + time + BEYOND))
 
@@ -151,7 +151,9 @@ def histories(model: Model, runs: Compared) -> xr.Dataset:
 
     ``angle_{name}`` (name, time_{name}), not a number beyond the end of a run.
     """
-    spring, variables, coordinates = spring_of(model), {}, {}
+    spring = spring_of(model)
+    variables: dict[str, Variable] = {}
+    coordinates: dict[str, tuple[Array, str]] = {}
     for name, (quantity, values, found) in runs.items():
         end = max(float(run.time[-1]) for run in found)
         time = np.arange(0.0, end, GRID)

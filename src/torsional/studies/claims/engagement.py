@@ -151,7 +151,7 @@ def compared(model: Model, stops: tuple[float, ...], peaks: Array, runs: list[li
 
 
 def _told(run: xr.Dataset, time: Array) -> Array:
-    return np.interp(time, run.time, run.torque, right=np.nan)
+    return np.asarray(np.interp(time, run.time, run.torque, right=np.nan))
 
 
 def _reason(bottoms: bool, slower: bool, later: bool) -> str:
