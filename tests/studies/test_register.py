@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from torsional.studies.answers import sweep
 from torsional.studies.base import Claim, Finding, Outcome, claim, shown
 from torsional.studies.register import claims
+from torsional.studies.swept import Along, Curve, swept
 
 IDS = [
     *(f"A{n}" for n in range(1, 17)),
@@ -71,7 +71,7 @@ def test_an_outcome_is_a_table_in_a_notebook() -> None:
 
 
 def test_what_draws_a_finding() -> None:
-    data = sweep("Z1", "factor", [1.0, 2.0], "ratio", speed=([3.0, 4.0], "speed"))
+    data = swept("Z1", Along("factor", [1.0, 2.0], "ratio"), {"speed": Curve([3.0, 4.0], "speed")})
     asked = claim("Z1", "1.2", "s", "c", picture=lambda found: found.sizes["factor"])(lambda trucks: None)
     assert asked.drawn(Finding(True, "c", {}, dataset=data)) == 2
     assert asked.drawn(Finding(True, "c", {})) is None
