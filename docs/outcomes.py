@@ -22,8 +22,13 @@ def all_verdicts(outcomes: Mapping[str, Any]) -> str:
 
 def sections(outcomes: Mapping[str, Any]) -> str:
     """Every claim with how it was judged and what was found, to be linked to."""
-    parts = (f'<section id="claim-{id.lower()}">{outcome._repr_html_()}</section>' for id, outcome in outcomes.items())
-    return "\n".join(parts)
+    return "\n".join(_section(id, outcome) for id, outcome in outcomes.items())
+
+
+def _section(id: str, outcome: Any) -> str:
+    page = f"papers/{PAGES[id[0]]}.html"
+    table = outcome._repr_html_().replace("<table>", '<table class="docutils">', 1)
+    return f'<section id="claim-{id.lower()}"><h3><a href="{page}">{id}</a>: {outcome.verdict}</h3>{table}</section>'
 
 
 def _table(rows: Iterable[tuple[str, str, Any]]) -> str:
