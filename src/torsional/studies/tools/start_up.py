@@ -95,6 +95,7 @@ def start_up(
     found = np.array([one(changed, float(value)) for changed, value in zip(models, at, strict=True)])
     name = varied.replace("-", "_")
     data = over(Along(name, at, asked.quantity, asked.words), _curves(models, found), model)
+    del data.attrs["speed_range"]  # starts lie below it
     where = "" if asked.quantity == "speed" else f" and {speed / RPM:.0f} rpm"
     by = f"starter of {torque:.0f} Nm at standstill{where}; averaged over four moments of the first firing, after 0.6 s"
     if asked.quantity == "time":
