@@ -86,7 +86,13 @@ class Search:
 
 
 def crest(at: Array, values: Array) -> float:
-    """Where the parabola through three values is highest."""
+    """Where the parabola through three values is highest; in the middle where they are alike.
+
+    >>> crest(np.array([1.0, 2.0, 3.0]), np.array([0.0, 3.0, 2.0])), crest(np.array([1.0, 2.0, 3.0]), np.zeros(3))
+    (2.25, 2.0)
+    """
+    if np.ptp(values) == 0:
+        return float(at[1])
     curved, slope, _ = np.polyfit(at - at[1], values, 2)
     return float(at[1] - 0.5 * slope / curved)
 
