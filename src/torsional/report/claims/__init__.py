@@ -27,8 +27,9 @@ def write_claims(asked: Asked, truck: Model, path: str | Path) -> Path:
         raise ModelError(
             "a report is an HTML page", where="path", found=repr(str(target)), allowed="a name ending in .html"
         )
-    lead = "The claims of a thesis on absorbers in heavy-duty truck powertrains, judged on this truck"
+    lead = f"What a thesis says of absorbers in heavy-duty truck powertrains, judged on: {truck.name}"
     target.write_text(
-        html_page(truck.name, "claims", lead, sections(asked), [(truck.name, truck.hash)]), encoding="utf-8"
+        html_page("Claims of the thesis", truck.name, lead, sections(asked), [(truck.name, truck.hash)]),
+        encoding="utf-8",
     )
     return target

@@ -23,6 +23,8 @@ THEMES = {
 """What the claims of a letter are about; A to F follow the thesis's appended papers."""
 TONES = {"reproduced": "good", "reproduced with a condition": "partly", "not reproduced": "bad", "not answered": "none"}
 """The tones of the verdicts."""
+MOST_ROWS = 12
+"""Longer tables of figures start closed."""
 
 
 def sections(asked: Asked) -> list[Section]:
@@ -100,8 +102,8 @@ def claim_blocks(asked: Asked, outcome: Outcome) -> list[Block]:
     ]
     rows = tuple((what, _sentence(text)) for what, text in asked_how if text)
     blocks: list[Block] = [head, Table("", ("", ""), rows, wrapped=True)]
-    blocks += figures_table(finding)
     blocks += drawn(study, finding)
+    blocks += figures_table(finding)
     return blocks + robustness_blocks(asked.robustness.get(claim.id))
 
 
@@ -113,7 +115,11 @@ def figures_table(finding: Finding) -> list[Block]:
     """What was found, figure by figure; what the clock of this machine told is named so."""
     rows = [(name, _readable(value)) for name, value in finding.figures.items()]
     rows += [(f"{name}, on this machine", shown(value)) for name, value in finding.measured.items()]
-    return [Table("Figures found", ("figure", "value"), tuple(rows), wrapped=True)] if rows else []
+    if not rows:
+        return []
+    many = len(rows) > MOST_ROWS
+    caption = f"All {len(rows)} figures found" if many else "Figures found"
+    return [Table(caption, ("figure", "value"), tuple(rows), folded=many, wrapped=True)]
 
 
 def _readable(value: Figure) -> str:
