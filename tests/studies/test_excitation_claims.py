@@ -64,6 +64,10 @@ def test_a13_figures(outcomes: dict[str, Outcome]) -> None:
     assert figures["SMF: order, near [%]"] < 5 < figures["SMF: order, away, largest [%]"]
     assert figures["SMF: swing, largest [%]"] > 50
     assert figures["SMF: first crankshaft mode over clutch mode [-]"] > 3
+    low, light = (figures[f"SMF: {name}: order, near [%]"] for name in ("lowest gear", "clutch damping × 0.05"))
+    assert figures["SMF: order, near [%]"] < low < 5 < 10 < light
+    reason = outcomes["A13"].finding.reason
+    assert f"{low:.1f} % in the lowest gear" in reason and f"{light:.1f} % with × 0.05" in reason
 
 
 @pytest.mark.parametrize(("name", "figure"), [("smf", "SMF, solid"), ("dmf", "DMF, solid")])
