@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.answers import at_input
 from torsional.studies.base import Outcome
-from torsional.studies.claims.comparison import behind_clutch, damped
+from torsional.studies.claims.comparison import _resonant, behind_clutch, damped, resonances
 from torsional.studies.trucks import Trucks, sprung
 from torsional.units import RPM
 
@@ -44,6 +46,28 @@ def test_a10_figures(outcomes: dict[str, Outcome]) -> None:
     assert figures["largest ratio, firing order [-]"] < 1
     light = figures["clutch damping × 0.2: cells above 1"]
     assert isinstance(light, tuple) and {text.split(":")[0] for text in light} >= {"gear 11", "gear 12"}
+
+
+def test_a10_a_bump_is_no_resonance(outcomes: dict[str, Outcome]) -> None:
+    """Maxima of no height do not count: at the shipped damping the amplitude falls from idle on in every gear."""
+    outcome = outcomes["A10"]
+    assert outcome.verdict == "reproduced with a condition" and "little damping" in outcome.finding.proviso
+    assert outcome.finding.figures["DMF: gears with a resonance above idle"] == ()
+    assert len(outcome.finding.figures["clutch damping × 0.2: DMF: gears with a resonance above idle"]) == 12  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("height", "kept"), [(0.08, ()), (0.13, ("gear 1: 30 rpm",))])
+def test_a10_a_peak_stands_out(height: float, kept: tuple[str, ...]) -> None:
+    """Out of the higher of the valleys beside it."""
+    values = np.array([3.0, 1.0, 1.0 + height, 0.4, 0.2, np.nan])[None, None]
+    coordinates = {"gear": ["1"], "mean_torque": [1.0], "speed": np.arange(1.0, 7.0) * 10 * RPM}
+    assert _resonant(xr.DataArray(values, coordinates, ("gear", "mean_torque", "speed"))) == kept
+
+
+def test_a11_without_a_mode_is_refused(trucks: Trucks) -> None:
+    """Springs and a clutch so stiff that their modes lie beyond the range."""
+    with pytest.raises(ModelError, match="no mode of springs and clutch"):
+        resonances(sprung(sprung(trucks.dmf, "dmf", 1e9), "clutch", 1e9), "dmf")
 
 
 def test_a11_far_above_resonance_the_springs_pass_on_their_force(trucks: Trucks) -> None:

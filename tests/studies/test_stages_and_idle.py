@@ -43,6 +43,14 @@ def test_a12_figures(outcomes: Mapping[str, Outcome]) -> None:
     assert figures["soft: mean torque that bottoms it [Nm]"] == pytest.approx(8e3 * (1000 / 8e3 + 2500 / 24e3))
     assert figures["two-stage: swings into its stop at"] == ("2500 Nm: 900 rpm",)
     assert figures["stiff: swings into its stop at"] == ()
+    outcome = outcomes["A12"]
+    assert outcome.verdict == "reproduced with a condition"
+    assert "2500 Nm: 900 rpm" in outcome.finding.proviso and "1000, 1250 Nm" in outcome.finding.proviso
+
+
+def test_a12_nothing_is_asked_beyond_full_load(trucks: Trucks) -> None:
+    for values in row(trucks.two_stage, 2600.0):
+        assert np.isnan(values).all() and values.shape == SPEEDS.shape
 
 
 def test_b6_inside_the_lash_nothing_but_the_damper(idle: Idle) -> None:
