@@ -57,8 +57,8 @@ SETTLING = 400
 SATURATES = "torques grow almost in proportion, while the twist grows less and less as the second stage gets stiffer"
 BELOW = (
     "at the model's damping; with {damping:g} Nms/rad, at small differences, the largest {quantities} lies at "
-    "{lowest:.0f} Nm, below the transition. Near {speed:.0f} rpm order 1.5 meets a natural frequency of the line behind the clutch "
-    "hub, which takes hardly any torque there"
+    "{lowest:.0f} Nm, below the transition. Near {speed:.0f} rpm order 1.5 meets a natural frequency of the line "
+    "behind the clutch hub, which takes hardly any torque there"
 )
 ASKED = (900.0, 1000.0, 1100.0, 1200.0, 1300.0, 1400.0, 1500.0)
 
