@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from torsional.absorbers import CentrifugalPendulum
 from torsional.studies.answers import at_input
 from torsional.studies.base import Outcome
-from torsional.studies.claims.pendulum import on_single, quiet_order
+from torsional.studies.claims.pendulum import on, on_single, quiet_order, share_of_way, way
 from torsional.studies.trucks import Trucks, only, replaced, without
 from torsional.studies.tuned_absorber import added, flywheel_alone, order_speeds, sized, tuning, tunings_above
 from torsional.units import RPM
@@ -86,6 +88,20 @@ def test_d4_figures(outcomes: dict[str, Outcome]) -> None:
     notch = np.asarray(figures["amplitude at the tuning speed [rad/s²]"])
     assert notch[1] / notch[0] == pytest.approx(2.0, rel=0.1)  # little damping: in proportion
     assert notch[-1] < figures["without absorber at the tuning speed [rad/s²]"]
+
+
+def test_g1_the_pendulum_has_but_so_much_way(outcomes: dict[str, Outcome], trucks: Trucks) -> None:
+    """A tautochrone's cusp lies c/(n sqrt(1 + n²)) from rest; beyond it the linear swing is no motion."""
+    pendulum = trucks.pendulum.components["pendulum"]
+    assert way(pendulum) == pytest.approx(0.15 / (3 * np.sqrt(10)))
+    assert way(replace(pendulum, stop=0.01)) == 0.01
+    at = np.array([600.0, 700.0, 900.0, 1300.0, 1900.0]) * RPM
+    assert share_of_way(on_single(trucks), at) == pytest.approx([6.5, 6.0, 3.9, 1.9, 1.1], abs=0.05)
+    assert share_of_way(trucks.pendulum, at[:3]) == pytest.approx([1.36, 0.83, 0.31], abs=0.01)
+    outcome = outcomes["G1"]
+    assert outcome.verdict == "reproduced with a condition" and "on the SMF at 600–2000 rpm" in outcome.finding.proviso
+    heavy = outcome.finding.figures["SMF: mass whose swing fits at every speed [kg]"]
+    assert share_of_way(on(trucks, "smf", heavy / 4.0), at).max() < 1 < share_of_way(on(trucks, "smf", 6.0), at).max()
 
 
 @pytest.mark.parametrize("rpm", [600.0, 1234.5, 2000.0])

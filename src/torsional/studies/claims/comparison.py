@@ -167,8 +167,8 @@ def a11(trucks: Trucks) -> Finding:
     above = 1.1 * resonances(variants[-1], spring)
     speed = speed[speed > above]
     if not speed.size:
-        told = {"found": f"{above / RPM:.0f} rpm", "remedy": "widen operation.speed"}
-        raise ModelError("no speed of the range lies above the resonances", where=model.name, **told)
+        remedy = f"widen operation.speed beyond {above / RPM:.0f} rpm"
+        raise ModelError("no speed of the range lies above the resonances", where=model.name, remedy=remedy)
     table = np.array([at_input(variant, speed) for variant in variants])
     travel = 0.8 * float(model.full_load_peak() / k[0])
     figures: dict[str, Figure] = {

@@ -116,9 +116,20 @@ def g2(trucks: Trucks) -> Finding:
     helps = {name: row[-1].angle < row[0].angle for name, row in found.items()}
     others = all(helped for name, helped in helps.items() if name != STIFFNESS)
     reason = "" if all(helps.values()) else _reason(helps)
-    proviso = PROVISO if others and passed_on and not helps[STIFFNESS] else ""
     good = others and (helps[STIFFNESS] or passed_on)
-    return Finding(good, CONDITION, figures | lower | elsewhere(model, own()), reason, compared(model), proviso)
+    told = [PROVISO] if good and not helps[STIFFNESS] else []
+    told += [_turning(name, row) for name, row in found.items() if good and helps[name] and _turns(row)]
+    return Finding(good, CONDITION, figures | lower | elsewhere(model, own()), reason, compared(model), "; ".join(told))
+
+
+def _turns(row: Sequence[Peaks]) -> bool:
+    """Whether the angle falls from the first to the last value, but not at every step."""
+    return not falling(np.array([each.angle for each in row]))
+
+
+def _turning(name: str, row: Sequence[Peaks]) -> str:
+    angles = ", ".join(f"{each.angle:.2f}" for each in row)
+    return f"the {name.split(' [')[0]} helps between the ends of what is asked, not at every step: {angles} deg"
 
 
 def damped(model: Model, damping: float) -> Peaks:
