@@ -173,7 +173,15 @@ def b2(trucks: Trucks) -> Finding:
     data = peaks(
         "B2", found, _kinds(1), 1, [NAMES[q] for q in JUDGED], regression=1, amplitude="0-peak", told="order 1.5,"
     )
-    return Finding(min(straight) > 0.97, CONDITION, figures, SATURATES, data)
+    reason = SATURATES if _bent(found["k2"], TWIST) < _bent(found["k2"], SPRING) else ""
+    return Finding(min(straight) > 0.97, CONDITION, figures, reason, data)
+
+
+def _bent(found: tuple[Case, ...], quantity: int) -> float:
+    """Growth of a quantity per stiffness at the end of a sweep over that at its beginning."""
+    differences, sizes, _ = table(found)
+    growth = np.diff(sizes[:, quantity]) / np.diff(differences)
+    return float(growth[-1] / growth[0])
 
 
 def _lightly(found: tuple[Case, ...]) -> dict[str, Figure]:
