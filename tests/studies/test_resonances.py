@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from torsional.studies.answers import mode_of, modes
+from torsional.studies.answers import mode_of, modes, tracked
 from torsional.studies.base import Outcome
-from torsional.studies.claims.resonances import behind_gears, stiffened, tracked, without_damper
+from torsional.studies.claims.resonances import behind_gears, stiffened, without_damper
 from torsional.studies.trucks import Trucks, replaced, sprung
 from torsional.units import RPM
 

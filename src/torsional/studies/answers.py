@@ -20,7 +20,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response, node_angles, order_response
-from torsional.solvers.modal import modal
+from torsional.solvers.modal import modal, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.studies.concepts import Scale
 from torsional.studies.trucks import reached
@@ -135,6 +135,12 @@ def modes(model: Model, gear: str | None = None) -> xr.Dataset:
     found = modal(system)
     found = found.isel(mode=np.flatnonzero(found.frequency.values > 0))
     return found.assign(order_speed=("mode", 2 * np.pi * found.frequency.values / main_order(model)))
+
+
+def tracked(model: Model, gear: str, place: int) -> float:
+    """Order speed [rpm] of the elastic mode with a number; modes of a chain do not cross when one spring changes."""
+    omega = natural_frequencies(linear_system(model, mean_torque(model), gear))
+    return float(omega[omega > 0][place]) / main_order(model) / RPM
 
 
 def mode_of(found: xr.Dataset, *elements: str) -> int:

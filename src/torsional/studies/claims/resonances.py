@@ -13,7 +13,17 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.operating import at_operating_point
-from torsional.studies.answers import by_gear, by_idle, floats, input_shaft, mean_torque, mode_of, modes, rising
+from torsional.studies.answers import (
+    by_gear,
+    by_idle,
+    floats,
+    input_shaft,
+    mean_torque,
+    mode_of,
+    modes,
+    rising,
+    tracked,
+)
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.swept import Along, Curve, over_gears, swept
 from torsional.studies.trucks import Trucks, lumped, reached, replaced, sprung, stiffness, within
@@ -37,11 +47,6 @@ def twists(model: Model, gear: str, place: int) -> dict[str, float]:
     twist = np.sqrt(share[spring] / c.stiffness[spring]) / np.abs(c.weights[spring]).max(axis=1)
     names = [name for name, kept in zip(c.names, spring, strict=True) if kept]
     return dict(zip(names, (twist / twist.max()).tolist(), strict=True))
-
-
-def tracked(model: Model, gear: str, place: int) -> float:
-    """Order speed [rpm] of the elastic mode with a number; modes of a chain do not cross when one spring changes."""
-    return float(modes(model, gear).order_speed[place]) / RPM
 
 
 def stiffened(model: Model, factors: Array, gear: str) -> Array:
