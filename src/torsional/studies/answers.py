@@ -18,7 +18,6 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.results import labelled
 from torsional.solvers.harmonic import harmonic_response, node_angles, order_response
 from torsional.solvers.modal import modal, natural_frequencies
 from torsional.solvers.operating import at_operating_point
@@ -181,12 +180,6 @@ def falling(values: ArrayLike) -> bool:
 def rising(values: ArrayLike) -> bool:
     """Whether values rise strictly along the first axis."""
     return bool(np.all(np.diff(np.asarray(values), axis=0) > 0))
-
-
-def curves(id: str, speed: Array, quantity: str, **values: ArrayLike) -> xr.Dataset:
-    """Curves over speed, one variable each, for the pictures of a claim."""
-    told = {name: (("speed",), np.asarray(value), quantity) for name, value in values.items()}
-    return labelled(told, {"speed": (speed, "speed")}, analysis=f"claim {id}", amplitude="half peak-to-peak")
 
 
 def floats(values: ArrayLike) -> tuple[float, ...]:

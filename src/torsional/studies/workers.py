@@ -6,10 +6,12 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
 from torsional.errors import ModelError
@@ -17,6 +19,7 @@ from torsional.errors import ModelError
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
+PATIENCE = 10.0  # [s] for processes that were killed to be gone, on a busy machine
 
 
 class Workers(Generic[Task, Result]):
@@ -66,12 +69,21 @@ class Workers(Generic[Task, Result]):
         if self._pool is None:
             return
         if kind is not None:
-            children = set(multiprocessing.active_children()) - self._others
-            for child in children:
-                child.kill()
-            for child in children:
-                child.join(1.0)
+            _killed(set(multiprocessing.active_children()) - self._others)
         self._pool.shutdown(wait=kind is None, cancel_futures=True)
+
+
+def _killed(children: set[BaseProcess]) -> None:
+    """All of them, and a moment's patience for each: the pool's own thread may reap one in our place.
+
+    A ``join`` that comes second then returns at once, before the first has noted the end.
+    """
+    for child in children:
+        child.kill()
+    latest = time.monotonic() + PATIENCE
+    for child in children:
+        while child.is_alive() and time.monotonic() < latest:
+            child.join(0.02)
 
 
 def _processors() -> int:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from torsional.absorbers import CoilSpring, GuideFriction, StraightSprings
+from torsional.absorbers import GuideFriction, StraightSprings
 from torsional.numerics.arrays import Array
 from torsional.results import Variable, labelled
 from torsional.studies.answers import floats
@@ -36,6 +36,7 @@ from torsional.studies.rig import (
     torques_of,
     with_values,
 )
+from torsional.studies.straight_springs import DESIGN
 from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
@@ -68,23 +69,8 @@ GREASED = GuideFriction(0.08, 0.10, bristle_time=1e-5, viscous_coefficient=0.02)
 def rig_flywheel() -> StraightSprings:
     """Straight springs with shoes, as the thesis's Paper F has them on its rig; our own figures, near those of the
     shipped truck."""
-    return StraightSprings(
-        primary_inertia=1.0,
-        secondary_inertia=1.0,
-        channels=3,
-        radius=0.15,
-        channel_arc=float(np.radians(112.6)),
-        springs_per_row=4,
-        spring=CoilSpring(rate=777e3, free_length=0.060, solid_length=0.049, mass=0.45),
-        shoe_mass=0.15,
-        shoe_width=0.012,
-        end_shoe_mass=0.10,
-        end_shoe_width=0.009,
-        secondary_clearance=(float(np.radians(0.3)),) * 2,
-        stop_angle=float(np.radians(15.98)),
-        grease_damping=0.3,
-        friction=GREASED,
-    )
+    arc = float(np.radians(112.6))
+    return dataclasses.replace(DESIGN, primary_inertia=1.0, channel_arc=arc, play_factors=(), friction=GREASED)
 
 
 TRUTH = {

@@ -17,7 +17,8 @@ from torsional.numerics.stepping.marching import Settings, begin, march
 from torsional.solvers.transient.acting import row_of
 from torsional.studies.answers import floats, main_order
 from torsional.studies.base import Figure, Finding, claim
-from torsional.studies.claims.loose_springs import DESIGN, SAMPLING, LooseMotion
+from torsional.studies.claims.loose_springs import SAMPLING, LooseMotion
+from torsional.studies.straight_springs import DESIGN
 from torsional.studies.swept import Along, Curve, swept
 from torsional.studies.trucks import Trucks
 from torsional.units import RPM

@@ -11,7 +11,6 @@ from functools import cached_property
 import numba
 import numpy as np
 
-from torsional.absorbers.spring_parts import CoilSpring
 from torsional.absorbers.straight_spring import StraightSprings, straight_spring_flywheel
 from torsional.engine import Excitation
 from torsional.errors import ModelError
@@ -24,27 +23,10 @@ from torsional.solvers.transient.acting import row_of
 from torsional.solvers.transient.problem import Problem
 from torsional.solvers.transient.starts import MotionState, starting
 from torsional.studies.answers import main_order
+from torsional.studies.straight_springs import DESIGN
 from torsional.system import System, assemble
 from torsional.units import RPM
 
-DESIGN = StraightSprings(
-    primary_inertia=1.035,
-    secondary_inertia=1.0,
-    channels=3,
-    radius=0.15,
-    channel_arc=math.radians(113.0),
-    springs_per_row=4,
-    spring=CoilSpring(rate=777e3, free_length=0.060, solid_length=0.049, mass=0.45),
-    shoe_mass=0.15,
-    shoe_width=0.012,
-    end_shoe_mass=0.10,
-    end_shoe_width=0.009,
-    secondary_clearance=(math.radians(0.3), math.radians(0.3)),
-    stop_angle=math.radians(15.98),
-    grease_damping=0.3,
-    play_factors=(1.0, 1.2, 1.4),
-)
-"""The flywheel's springs in three channels with 0.7°, 0.84° and 0.98° of play, greased, without dry friction."""
 SPEED, TORQUE = 650.0 * RPM, 300.0
 SPAN, SAMPLING = 0.5, 1e-3
 EXACT = 1e-9

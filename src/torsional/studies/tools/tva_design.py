@@ -19,7 +19,6 @@ from torsional.studies.trucks import Trucks, replaced, without
 from torsional.studies.tuned_absorber import RING, SPRING, added, tuning
 from torsional.units import RPM
 
-CARRIERS = ("flange", "secondary")
 SEPARATIONS = (0.05, 0.1, 0.2)
 """Of the added resonance from the tuning, over the tuning."""
 QUANTITIES = {"inertia": "inertia", "damping": "damping"}
