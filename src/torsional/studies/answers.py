@@ -118,6 +118,7 @@ def order_angles(system: System, drive: Excitation, node: str) -> ComplexArray:
     return np.asarray(node_angles(system, q)[:, system.node_index(node)])
 
 
+@lru_cache(maxsize=16)
 def input_shaft(model: Model) -> str:
     """The connection that brings torque to the gearbox input from the engine's side."""
     powertrain, node = model.powertrain(), model.landmarks.input

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from torsional.engine.orders import HIGHEST_ORDER
@@ -16,7 +18,7 @@ from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.solvers.periodic.stability import MARGIN, branch_multipliers
 from torsional.solvers.periodic.states import states
 from torsional.studies.answers import input_shaft
-from torsional.system import assemble
+from torsional.system import System, assemble
 
 Range = tuple[float, float]
 SPRING, SHAFT, INPUT_ACCELERATION, TWIST = range(4)
@@ -39,7 +41,7 @@ def over_torque(
         depth=depth,
         stability=False,
     )
-    return _followed(explorer_of(assemble(model.powertrain(gear)), load, torque, asked))
+    return _followed(explorer_of(_assembled(model, gear), load, torque, asked))
 
 
 def over_speed(
@@ -48,7 +50,13 @@ def over_speed(
     """Branches over a range of speed [rad/s] at one mean torque [Nm], followed."""
     load = engine_load(model, speed, torque, highest_order)
     asked = Exploration(hold=model.landmarks.load, highest_order=highest_order, depth=depth, stability=False)
-    return _followed(explorer_of(assemble(model.powertrain(gear)), load, speed, asked))
+    return _followed(explorer_of(_assembled(model, gear), load, speed, asked))
+
+
+@lru_cache(maxsize=8)
+def _assembled(model: Model, gear: str) -> System:
+    """Kept, as searches over speed ask one model again and again."""
+    return assemble(model.powertrain(gear))
 
 
 def _followed(explorer: Explorer) -> Explorer:

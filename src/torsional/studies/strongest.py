@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
+from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
 from torsional.studies.motions import amplitudes, doubled, doubling_margin, over_torque
 from torsional.units import RPM
 
-TORQUES = (700.0, 2300.0)
-"""Mean torques [Nm] that are searched."""
 HIGHEST_ORDER = 12.0
 """Half orders beyond it change the largest amplitudes by less than 0.01 %."""
-FIRST_LOOK = np.arange(720.0, 1121.0, 40.0) * RPM
 STEP, NEAR = 12 * RPM, 0.5 * RPM
 REFINEMENTS = 3
+TO = 20.0
+"""How closely [Nm/rad] an onset is located."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +41,14 @@ class Search:
 
     At each speed branches are followed over the mean torque, through their folds, so that motions that are isolated
     over speed are met too; over speed the largest is climbed to and taken from parabolas.  ``torques``: mean torques
-    [Nm] between which it is looked for, ``first_look``: speeds [rad/s] from which it climbs.
+    [Nm] between which it is looked for, ``first_look``: speeds [rad/s] from the highest of which it climbs where
+    neither a speed near by nor one that was seen has any.
     """
 
     model: Model
     order: float
-    torques: tuple[float, float] = TORQUES
-    first_look: Array = field(default_factory=lambda: FIRST_LOOK)
+    torques: tuple[float, float]
+    first_look: Array
     seen: dict[float, Array] = field(default_factory=dict)
 
     def at(self, speed: float) -> Array:
@@ -79,7 +82,10 @@ class Search:
 
     def _climbed(self, size: Callable[[float], float], near: float | None) -> float:
         """A speed that is higher than those a step below and above."""
-        top = near if near is not None and size(near) else max(map(float, self.first_look), key=size)
+        known = sorted({*self.seen} if near is None else {*self.seen, near})
+        top = max(known, key=size, default=0.0)
+        if not known or not size(top):
+            top = max(map(float, self.first_look), key=size)
         while max(size(top - STEP), size(top + STEP)) > size(top):
             top = max(top - STEP, top + STEP, key=size)
         return max((speed for speed in self.seen if abs(speed - top) <= STEP), key=size)
@@ -113,21 +119,42 @@ def _crests(branch: Branch, values: Array) -> Array:
     return np.array(best).T
 
 
-def onset(build: Callable[[float], Model], low: float, high: float) -> float:
-    """The stiffness difference [Nm/rad] between two others below which no third-order motion doubles its period."""
+class Onset(NamedTuple):
+    """The ``difference`` of the stiffnesses [Nm/rad] below which no motion doubles its period, and the ``speed``
+    [rad/s] at which one does first."""
 
-    def margin(difference: float) -> float:
-        model = build(difference)
+    difference: float
+    speed: float
+
+
+def onset(search: Callable[[float], Search], low: float, high: float) -> Onset:
+    """Where doubled periods begin between two differences [Nm/rad]; ``search``: where to look, given a difference.
+
+    Raises ModelError where none does up to ``high``; at most ``low`` where they begin below it.
+    """
+
+    @cache
+    def margin(difference: float) -> tuple[float, float]:
+        asked = search(difference)
 
         def least(speed: float) -> float:
-            explorer = over_torque(model, speed, TORQUES, depth=0, highest_order=HIGHEST_ORDER)
+            explorer = over_torque(asked.model, speed, asked.torques, depth=0, highest_order=HIGHEST_ORDER)
             lowest = [-_crests(b, -doubling_margin(b)[None])[0, 0] for b in explorer.branches]
             return float(min(lowest))
 
-        look = [least(float(speed)) for speed in FIRST_LOOK]
-        best = int(np.argmin(look))
-        ends = FIRST_LOOK[max(best - 1, 0)], FIRST_LOOK[min(best + 1, FIRST_LOOK.size - 1)]
-        found = minimize_scalar(least, bounds=ends, method="bounded", options={"xatol": NEAR})
-        return min(float(found.fun), look[best])
+        step = float(np.diff(asked.first_look).mean())
+        best = min(map(float, asked.first_look), key=least)
+        found = minimize_scalar(least, bounds=(best - step, best + step), method="bounded", options={"xatol": NEAR})
+        return float(found.fun), float(found.x)
 
-    return float(brentq(margin, low, high, xtol=50.0))
+    above = 2 * low
+    while margin(above)[0] > 0:
+        if above >= high:
+            remedy = "ask a model with less damping beside the springs, or with a larger step"
+            found = f"none up to a difference of {high / 1e3:.3g} kNm/rad"
+            raise ModelError("no motion doubles its period", where="stiffness step", found=found, remedy=remedy)
+        low, above = above, min(2 * above, high)
+    if margin(low)[0] <= 0:
+        return Onset(low, margin(low)[1])
+    begins = float(brentq(lambda d: margin(d)[0], low, above, xtol=TO))
+    return Onset(begins, margin(begins)[1])

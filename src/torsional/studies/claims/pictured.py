@@ -15,7 +15,7 @@ from torsional.results import labelled
 from torsional.solvers.periodic.branches import Branch
 from torsional.studies.answers import main_order
 from torsional.studies.motions import amplitudes, stable
-from torsional.studies.stiffness_step import LIGHT, Case, table
+from torsional.studies.stiffness_step import Sweep, table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Picture
@@ -73,13 +73,13 @@ def draw_motions(data: xr.Dataset) -> Picture:
     return plot_doubling(data)
 
 
-SWEPT = {"k2": "k2 varied", "k1": "k1 varied", "light": f"k2 varied, {LIGHT:g} Nms/rad (reported)"}
+SWEPT = {"k2": "k2 varied", "k1": "k1 varied", "light": "k2 varied, {damping:g} Nms/rad (reported)"}
 """What each sweep varies."""
 
 
 def peaks(
     id: str,
-    found: Mapping[str, Sequence[Case]],
+    found: Mapping[str, Sweep],
     kinds: Mapping[str, tuple[int, str]],
     which: int,
     judged: Sequence[str],
@@ -89,8 +89,9 @@ def peaks(
 
     ``kinds``: {name: (place in the table, quantity)}; ``judged``: the names that the verdict turns on.
     """
-    tables = {name: table(tuple(cases)) for name, cases in found.items()}
-    sweeps = np.concatenate([np.full(t[0].size, SWEPT[name]) for name, t in tables.items()])
+    tables = {name: table(sweep.cases) for name, sweep in found.items()}
+    words = {name: SWEPT[name].format(damping=sweep.damping) for name, sweep in found.items()}
+    sweeps = np.concatenate([np.full(t[0].size, words[name]) for name, t in tables.items()])
     differences = np.concatenate([t[0] for t in tables.values()])
     values = {
         name.lower().replace(" ", "_"): (("case",), np.concatenate([t[which][:, q] for t in tables.values()]), kind)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -16,18 +16,14 @@ from torsional.studies.advice import advised, drawn, over, positive, values_of
 from torsional.studies.answers import main_order
 from torsional.studies.base import tool
 from torsional.studies.motions import INPUT_ACCELERATION, SHAFT, SPRING, TWIST, doubled, over_speed
-from torsional.studies.stiffness_step import mode_speed, stages, stepped, transition_torque
-from torsional.studies.strongest import HIGHEST_ORDER, Search
+from torsional.studies.stiffness_step import searched, stages, stepped, transition_torque
+from torsional.studies.strongest import HIGHEST_ORDER
 from torsional.studies.swept import Along, Curve
-from torsional.studies.trucks import Trucks, sprung
+from torsional.studies.trucks import Trucks
 from torsional.units import RPM
 
 DIFFERENCES = (1.25, 1.5, 2.0, 2.5, 3.0, 3.25)
 """k2 − k1 over k1."""
-TORQUES = (0.7, 2.3)
-"""Mean torques that are searched, over the torque at the transition."""
-LOOKS = 12
-"""Speeds from which the strongest vibration is climbed to."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +77,8 @@ def stiffness_step(
 
 def strongest(model: Model, looked: tuple[float, ...] | None = None) -> Strongest:
     """The strongest vibration of half the firing order with two stages; amplitudes of zero where there is none."""
-    low, high = (transition_torque(model) * share for share in TORQUES)
-    search = Search(model, main_order(model) / 2, (low, high), first_looks(model, looked))
+    search = searched(model)
+    search = replace(search, first_look=values_of(looked, search.first_look, "speeds"))
     if not any(search.at(float(speed))[0, SPRING] for speed in search.first_look):
         return Strongest(np.zeros(4))
     peak = search.peak(SPRING)
@@ -91,15 +87,6 @@ def strongest(model: Model, looked: tuple[float, ...] | None = None) -> Stronges
     values = np.concatenate([branch.values for branch in branches]) if branches else np.array([np.nan])
     ends = (float(values.min()), float(values.max()))
     return Strongest(np.array([peak.amplitude, *others]), peak.speed, peak.torque, ends)
-
-
-def first_looks(model: Model, given: tuple[float, ...] | None) -> Array:
-    """Speeds [rad/s] about twice the order speeds of the springs' mode in either stage."""
-    spring = model.landmarks.springs[0]
-    twice = [2 * mode_speed(sprung(model, spring, k)) for k in stages(model)]
-    low, high = model.operation.speed
-    derived = np.linspace(max(0.95 * twice[0], 0.8 * low), min(1.1 * twice[1], high), LOOKS)
-    return values_of(given, derived, "speeds")
 
 
 def _curves(found: list[Strongest], transition: float, order: float) -> dict[str, Curve]:
