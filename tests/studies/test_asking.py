@@ -305,6 +305,17 @@ class TestAsked:
         assert "IndexError: list index out of range" in found.outcomes["A6"].finding.reason
 
 
+def test_thorough_asks_dear_claims_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A claim that is asked of one truck is then asked of two, and of those with one other parameter."""
+    known = {"A6": dataclasses.replace(claims()["A6"], trucks=1), "E1": claims()["E1"]}
+    monkeypatch.setattr(asking, "claims", lambda: known)
+    few, all_of_them = (
+        asked(TRUCKS, ["A6"], many=2, thorough=way, processes=1).robustness["A6"] for way in (False, True)
+    )
+    assert (few.asked, few.alone) == (1, 0) and all_of_them.asked == 2 and all_of_them.alone > 100
+    assert known["E1"].asked_of(200).trucks == 0
+
+
 def ready() -> None:
     """Nothing to prepare."""
 

@@ -30,6 +30,7 @@ def run(
     changes: Sequence[str] | None,
     quick: bool,
     trucks: int,
+    thorough: bool,
     processes: int,
     as_json: bool,
     output: Path,
@@ -42,9 +43,8 @@ def run(
     truck_of(truck, None, [beside], (".json",))
     silent = quiet or as_json
     with WATCH.silent(silent), progress("claims", silent) as moved:
-        found = asked(
-            trucks_of(model), chosen, many=0 if quick else trucks, processes=processes or None, progress=moved
-        )
+        many, count = 0 if quick else trucks, processes or None
+        found = asked(trucks_of(model), chosen, many=many, thorough=thorough, processes=count, progress=moved)
     text = json_text(document(found, model))
     written({beside: text_writer(text)})  # first: no picture that fails shall cost a quarter of an hour's work
     written({output: lambda draft: write_claims(found, model, draft)})

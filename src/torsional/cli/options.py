@@ -212,6 +212,10 @@ StudyModel = Annotated[
 ]
 Quick = Annotated[bool, typer.Option("--quick", help="Ask the truck alone, not many varied ones.")]
 Many = Annotated[int, typer.Option("--trucks", metavar="N", min=1, help="How many varied trucks are asked together.")]
+Thorough = Annotated[
+    bool,
+    typer.Option("--thorough", help="Ask dear claims of all varied trucks too: an hour or two instead of minutes."),
+]
 Processes = Annotated[
     int,
     typer.Option("--processes", metavar="N", min=0, help="Processes side by side; 0: one a core.", show_default=False),

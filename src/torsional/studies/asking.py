@@ -71,11 +71,13 @@ def asked(
     ids: Iterable[str] = (),
     *,
     many: int = MANY,
+    thorough: bool = False,
     processes: int | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Asked:
     """The outcomes of claims (all unless ``ids`` names some), and their robustness on ``many`` trucks (0: none).
 
+    ``thorough``: dear claims are asked of all these too, and of those with one other parameter, which takes hours.
     The figures are the same whatever the number of ``processes`` (None: one a processor).  Raises ModelError for an
     unknown id, for models that came from no file, and where a process dies.
 
@@ -83,7 +85,7 @@ def asked(
     >>> found.outcomes["A6"].verdict
     'reproduced'
     """
-    studies = _chosen(ids)
+    studies = {id: study.asked_of(MANY) if thorough else study for id, study in _chosen(ids).items()}
     documents = {concept: model.document for concept, model in trucks.models.items()}
     if not all(documents.values()):
         remedy = "load them from files, or change values of the file with changed"

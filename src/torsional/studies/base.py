@@ -8,7 +8,7 @@ whose section numbers are given).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from torsional.errors import ModelError
@@ -120,6 +120,10 @@ class Study:
 
     def __call__(self, trucks: Trucks) -> Outcome:
         return Outcome(self.claim, self.question(trucks))
+
+    def asked_of(self, trucks: int) -> Study:
+        """A copy that is asked of so many trucks; one about a method stays as it is."""
+        return replace(self, trucks=trucks if self.trucks else 0)
 
     def drawn(self, finding: Finding) -> Picture | None:
         """The picture of a finding; None of one that has no curves."""

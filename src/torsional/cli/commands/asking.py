@@ -19,6 +19,7 @@ def claims(
     changes: o.Changes = None,
     quick: o.Quick = False,
     trucks: o.Many = 200,
+    thorough: o.Thorough = False,
     processes: o.Processes = 0,
     as_json: o.Json = False,
     output: o.Page = Path("claims.html"),
