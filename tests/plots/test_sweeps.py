@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from torsional.errors import ModelError
 from torsional.model import Model
-from torsional.plots import plot_sweep, save_png
+from torsional.plots import plot_sweep, save_png, style
 from torsional.plots.sweeps import LIMIT
 from torsional.studies.swept import Along, Curve, over_gears, over_speed, swept
 from torsional.units import RPM
@@ -106,3 +106,13 @@ def test_logarithmic_axes_and_the_inverse() -> None:
 def test_what_is_no_sweep_is_refused() -> None:
     with pytest.raises(ModelError, match="one dimension"):
         plot_sweep(xr.Dataset({"a": (("x", "y"), np.zeros((2, 2)))}))
+
+
+def test_points_bear_the_colour_of_their_curve_and_are_named_once() -> None:
+    told = {name: Curve([1.0, 2.0, 3.0], "ratio", name) for name in "ab"}
+    told |= {f"{n}_at": Curve([np.nan, 2.1, np.nan], "ratio", "in time", points=True, like=n) for n in "ba"}
+    (axes,) = plot_sweep(swept("X", Along("factor", [1.0, 2.0, 3.0], "ratio", "factor"), told)).axes
+    a, b, b_at, a_at = drawn(axes, "curve")
+    assert (a_at.get_color(), b_at.get_color()) == (a.get_color(), b.get_color()) and a.get_color() != b.get_color()
+    assert legend(axes) == ["a", "b", "in time"]
+    assert axes.get_legend().legend_handles[2].get_color() == style.INK

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import textwrap
 from collections.abc import Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,8 @@ LIMIT = "#b3261e"
 MARKED = 26
 """Points up to which each bears a marker."""
 MARKERS = "osD^v*<>"
+POINTS = {"linestyle": "none", "marker": "x", "markersize": 7.0, "markeredgewidth": 1.8, "zorder": 6, "clip_on": False}
+"""How single places look, whole at the edges of the picture too."""
 WIDTH, HEIGHT, LONE = 8.6, 2.4, 3.6
 """Size of the picture and of its panels [inch]; height of one that stands alone."""
 SHORT = 0.05
@@ -37,8 +40,9 @@ def plot_sweep(data: xr.Dataset) -> Figure:
 
     Read from attributes where they are there: ``words`` (of a curve, of the coordinate), ``panel`` (what a panel
     shows; curves of one quantity and panel share one), ``amplitude`` (0-peak or half peak-to-peak), ``limit`` in SI
-    with ``limit_words`` (a dashed line), ``points`` (markers only), ``scale`` "log", ``inverse`` (what one over
-    the coordinate is called, told along the upper edge); of the Dataset ``speed_range``
+    with ``limit_words`` (a dashed line), ``points`` (markers only, in the colour of the curve that they are ``like``),
+    ``scale`` "log", ``inverse`` (what one over the coordinate is called, told along the upper edge); of the Dataset
+    ``speed_range``
     [rad/s], shaded wherever an axis is a speed.  What is infinite is marked at the panel's upper edge.  Values over
     names (gears) are told point by point.  Raises ModelError for a Dataset without such curves.
     """
@@ -68,7 +72,9 @@ def _panels(data: xr.Dataset) -> tuple[str, list[list[str]]]:
 def draw_curves(axes: Axes, data: xr.Dataset, along: str, curves: Sequence[str]) -> None:
     """The curves of one panel with its limits, shades, label and legend."""
     x = positions(data[along])
-    for number, name in enumerate(curves):
+    for place, name in enumerate(curves):
+        like = data[name].attrs.get("like")
+        number = curves.index(like) if like in curves else place
         if data[along].dtype.kind == "f" or along == "gear":
             _draw_curve(axes, x, data[name], number)
         else:
@@ -127,7 +133,7 @@ def _draw_curve(axes: Axes, x: Array, curve: xr.DataArray, number: int) -> None:
     look: dict[str, Any] = {"color": style.COLOURS[number % len(style.COLOURS)], "gid": "curve"}
     look |= {"marker": MARKERS[number % len(MARKERS)], "markersize": 4.0} if x.size <= MARKED else {}
     if curve.attrs.get("points"):
-        look |= {"linestyle": "none", "marker": "x", "markersize": 7.0, "markeredgewidth": 1.8, "zorder": 4}
+        look |= POINTS
     elif curve[curve.dims[0]].dtype.kind != "f":
         look |= {"linewidth": 0.9}
     axes.plot(x, values, label=named(curve), **look)
@@ -208,9 +214,20 @@ def _shade(axes: Axes, data: xr.Dataset, along: str, quantity: str) -> None:
 def _legend(axes: Axes, several: bool) -> None:
     """Beside the panel, so that it hides nothing; none for a lone curve that its axis names."""
     handles, words = axes.get_legend_handles_labels()
-    kept = [(h, w) for h, w in zip(handles, words, strict=True) if several or not _is_curve(h)]
+    kept = _once([(h, w) for h, w in zip(handles, words, strict=True) if several or not _is_curve(h)])
     if kept:
         axes.legend(*zip(*kept, strict=True), loc="upper left", bbox_to_anchor=(1.005, 1.03), borderaxespad=0.0)
+
+
+def _once(entries: Sequence[tuple[Any, str]]) -> list[tuple[Any, str]]:
+    """Legend entries without repetition; what several curves share is told in ink, not in the colour of one of them."""
+    words = [word for _, word in entries]
+    first = {word: handle for handle, word in reversed(entries)}
+    for word, handle in first.items():
+        if words.count(word) > 1:
+            first[word] = copy(handle)
+            first[word].set_color(style.INK)
+    return [(first[word], word) for word in dict.fromkeys(words)]
 
 
 def _is_curve(handle: Any) -> bool:

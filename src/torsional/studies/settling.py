@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,17 +25,24 @@ times that to go."""
 
 @dataclass(frozen=True, eq=False)
 class Stepped:
-    """A line under a ``drive`` at one speed, stepped in time; ``hold``: the node that takes up the mean torque."""
+    """A line under a ``drive`` at one speed, stepped in time; ``hold``: the node that takes up the mean torque.
+
+    ``longest`` time step [s]; ``patience``: periods that a motion is given to repeat itself.
+    """
 
     system: System
     drive: Excitation
     hold: str = ""
+    longest: float = STEP
+    patience: int = 3000
 
     @classmethod
-    def of(cls, model: Model, speed: float, torque: float, highest_order: float = HIGHEST_ORDER) -> Stepped:
+    def of(
+        cls, model: Model, speed: float, torque: float, highest_order: float = HIGHEST_ORDER, **options: Any
+    ) -> Stepped:
         """A model in its top gear at a ``speed`` [rad/s] and mean ``torque`` [Nm]."""
         drive = engine_drive(model, speed, torque, highest_order)
-        return cls(assemble(model.powertrain()), drive, model.landmarks.load)
+        return cls(assemble(model.powertrain()), drive, model.landmarks.load, **options)
 
     @property
     def speed(self) -> float:
@@ -49,7 +57,7 @@ class Stepped:
     @property
     def step(self) -> float:
         """The time step [s], a whole number of which makes a period."""
-        return self.period / float(np.ceil(self.period / STEP))
+        return self.period / float(np.ceil(self.period / self.longest))
 
     def begun(self, timed: PiecewiseMotion, state: Array) -> MotionState:
         """A state of the exact motion in time, at the crank angle zero, as a start; friction remembers nothing."""
@@ -58,9 +66,8 @@ class Stepped:
 
     def settled(self, start: object = "equilibrium") -> xr.Dataset:
         """The steady motion that a run ends on, in orders."""
-        return steady_state(
-            self.system, self.drive, hold=self.hold, start=start, step=self.step, tolerance=REPEATING, thorough=False
-        )
+        limits: dict[str, Any] = {"tolerance": REPEATING, "most_periods": self.patience, "thorough": False}
+        return steady_state(self.system, self.drive, hold=self.hold, start=start, step=self.step, **limits)
 
     def run(self, start: object, periods: int, *pulses: TorqueHistory) -> xr.Dataset:
         """The motion over some periods of the drive, with ``pulses`` besides."""

@@ -25,8 +25,8 @@ from torsional.results import labelled
 class Curve:
     """Values of a quantity in SI; what they are called; the panel they stand in, by what its axis says; a limit there.
 
-    ``points``: asked at single places only, so not joined by a line; ``scale``: "log" or nothing.  Not a number is left
-    out; infinite is told as lying beyond the picture.
+    ``points``: asked at single places only, so not joined by a line; ``like``: the curve of the panel whose colour they
+    bear; ``scale``: "log" or nothing.  Not a number is left out; infinite is told as lying beyond the picture.
     """
 
     values: ArrayLike
@@ -38,11 +38,12 @@ class Curve:
     limit_words: str = ""
     points: bool = False
     scale: str = ""
+    like: str = ""
 
     @property
     def told(self) -> dict[str, object]:
         """What the picture must know, as attributes."""
-        every = {name: getattr(self, name) for name in ("words", "panel", "amplitude", "limit_words", "scale")}
+        every = {name: getattr(self, name) for name in ("words", "panel", "amplitude", "limit_words", "scale", "like")}
         found: dict[str, object] = {name: text for name, text in every.items() if text}
         found |= {} if self.limit is None else {"limit": np.asarray(self.limit, dtype=float).tolist()}
         return found | ({"points": 1} if self.points else {})
