@@ -12,8 +12,8 @@ from torsional.laws import Jenkins
 from torsional.solvers.periodic.states import states
 from torsional.studies.answers import at_input, mean_torque
 from torsional.studies.base import Outcome
-from torsional.studies.claims.friction import AROUND, SWEEP, needed
-from torsional.studies.friction import STICKING, WASHER, answered, washed
+from torsional.studies.claims.friction import SWEEP, needed
+from torsional.studies.friction import AROUND, STICKING, WASHER, answered, washed
 from torsional.studies.motions import over_speed
 from torsional.studies.trucks import Trucks
 from torsional.system import assemble

@@ -90,6 +90,11 @@ class Scale:
         return self.torque / (self.order * self.idle) ** 2
 
     @property
+    def acceleration(self) -> float:
+        """Ratio of accelerations, torque over inertia: (n · idle / (3 · 600 rpm))²."""
+        return self.torque / self.inertia
+
+    @property
     def factors(self) -> dict[str, float]:
         """By quantity of the nomenclature; what is not named stays (lengths, angles, ratios, friction, contacts)."""
         return {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.solvers.periodic.branches import Branch
 from torsional.solvers.periodic.states import states
-from torsional.studies.answers import main_order, mean_torque
+from torsional.studies.answers import by_idle, main_order, mean_torque, mode_of, modes
 from torsional.studies.motions import over_speed
 from torsional.studies.strongest import crest
 from torsional.studies.trucks import joined, replaced
@@ -25,8 +26,29 @@ from torsional.units import RPM
 WASHER = "clutch_friction"
 STICKING = 1e5
 """Stiffness of a washer that sticks [Nm/rad], four times the shipped clutch damper's."""
+AROUND, ABOUT = (600 * RPM, 1000 * RPM), (0.92, 1.3)
+"""Speeds among which the clutch's resonance of the shipped truck is sought, and the least window over the clutch mode's
+order speed."""
 ORDERS = 9.0
 """Highest order: the third and its next multiples."""
+
+
+@lru_cache(maxsize=8)
+def clutch_speed(model: Model) -> float:
+    """Order speed [rad/s] of the mode that lives in the clutch; raises ModelError where that lies beyond the range."""
+    found = modes(model)
+    speed = float(found.order_speed[mode_of(found, model.landmarks.clutch)])
+    if speed > model.operation.speed[1]:
+        told = {"found": f"clutch mode met at {speed / RPM:.0f} rpm", "remedy": "give the clutch a damper with springs"}
+        problem = "no resonance in the range twists the clutch, so its friction limits none"
+        raise ModelError(problem, where="clutch", **told)
+    return speed
+
+
+def around(model: Model) -> tuple[float, float]:
+    """Speeds [rad/s] among which the resonance of a truck is sought: they follow idle, and hold the clutch mode."""
+    low, high = (share * clutch_speed(model) for share in ABOUT)
+    return float(min(by_idle(model, AROUND[0]), low)), float(max(by_idle(model, AROUND[1]), high))
 
 
 def washed(model: Model, torque: float, viscous: float = 1.0, sticking: float = STICKING) -> Model:

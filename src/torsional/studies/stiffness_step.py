@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
+from torsional.errors import ModelError
 from torsional.laws import Hinges
 from torsional.model import Model
 from torsional.numerics.arrays import Array
@@ -26,6 +27,8 @@ LIGHT = 0.25
 """A second, light damping, over the model's own."""
 TORQUE_SHARES = (0.7, 2.3)
 """Mean torques that are searched, over the torque at the transition."""
+LOADED = 0.95
+"""How far they go of full load's peak with the stop in its place."""
 LOOKS = 12
 """Speeds from which the strongest vibration is climbed to."""
 
@@ -34,6 +37,14 @@ def stages(model: Model) -> tuple[float, float]:
     """Stiffnesses [Nm/rad] before and after the transition of a two-stage model."""
     law = hinged(model, model.landmarks.springs[0])
     return float(law.tangent(0.0)), float(law.tangent(1.001 * law.nearest_edge))
+
+
+def carrying(model: Model) -> tuple[float, float]:
+    """The same; raises ModelError where the first stage is free play, which leaves no torque at the transition."""
+    if stages(model)[0] <= 0 or transition_torque(model) <= 0:
+        remedy = "leave the free play out of absorber.stages, or ask subharmonic_map, which takes any stages"
+        raise ModelError("the first stage carries no torque", where=model.landmarks.springs[0], remedy=remedy)
+    return stages(model)
 
 
 def mode_speed(model: Model) -> float:
@@ -73,6 +84,19 @@ def searched(model: Model, transition: float | None = None) -> Search:
     low, high = model.operation.speed
     looks = np.linspace(max(0.95 * twice[0], 0.8 * low), min(1.1 * twice[1], high), LOOKS)
     return Search(model, main_order(model) / 2, (TORQUE_SHARES[0] * at, TORQUE_SHARES[1] * at), looks)
+
+
+def attained(model: Model) -> Search:
+    """The same, as far as the engine has the mean torques; raises ModelError where nothing doubles its period there."""
+    search = searched(model)
+    low, high = search.torques
+    search = replace(search, torques=(low, min(high, LOADED * model.full_load_peak())))
+    if search.torques[1] <= low or not max(search.at(float(speed))[0, SPRING] for speed in search.first_look):
+        found = f"transition at {transition_torque(model):.0f} Nm, full load's peak {model.full_load_peak():.0f} Nm"
+        remedy = "ask a model with less damping beside the springs, or with a larger step"
+        told = {"where": model.landmarks.springs[0], "found": found, "remedy": remedy}
+        raise ModelError("no motion doubles its period about the transition", **told)
+    return search
 
 
 @dataclass(frozen=True)
@@ -148,6 +172,7 @@ def sweeps(model: Model) -> dict[str, Sweep]:
 
     Raises ModelError where no step has a motion of twice the period.
     """
+    carrying(model)
     soft, stiff = (float(by_peak(model, k)) for k in (SOFT, STIFF))
     own = float(model.components[model.landmarks.springs[0]].damping)  # type: ignore[attr-defined]
 

@@ -9,14 +9,13 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.advice import advised, drawn, over, positive, values_of
 from torsional.studies.answers import main_order
 from torsional.studies.base import tool
 from torsional.studies.motions import INPUT_ACCELERATION, SHAFT, SPRING, TWIST, doubled, over_speed
-from torsional.studies.stiffness_step import searched, stages, stepped, transition_torque
+from torsional.studies.stiffness_step import carrying, searched, stepped, transition_torque
 from torsional.studies.strongest import HIGHEST_ORDER
 from torsional.studies.swept import Along, Curve
 from torsional.studies.trucks import Trucks
@@ -58,10 +57,7 @@ def stiffness_step(
     Top gear, by harmonic balance; branches are followed over mean torque from 0.7 to 2.3 of the transition's.
     """
     model = trucks.two_stage
-    if stages(model)[0] <= 0 or transition_torque(model) <= 0:
-        remedy = "leave the free play out of absorber.stages, or ask subharmonic_map, which takes any stages"
-        raise ModelError("the first stage carries no torque", where=model.landmarks.springs[0], remedy=remedy)
-    soft = positive(first, stages(model)[0], "first")
+    soft = positive(first, carrying(model)[0], "first")
     steps = values_of(differences, soft * np.array(DIFFERENCES), "differences")
     found = [strongest(stepped(model, soft, soft + float(d), damping), speeds) for d in steps]
     along = Along("difference", steps, "stiffness", "difference of the stiffnesses, second less first")
