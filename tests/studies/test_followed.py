@@ -11,6 +11,7 @@ from torsional.errors import ModelError
 from torsional.files import changed
 from torsional.laws import Jenkins
 from torsional.studies.claims.friction import HIGHER, LIMITS, apart, condition, far, limits_of, names, rubbed
+from torsional.studies.claims.idle import _reason, roomy
 from torsional.studies.concepts import Scale
 from torsional.studies.friction import AROUND, STICKING, WASHER, around, clutch_speed
 from torsional.studies.stiffness_step import attained, carrying
@@ -71,3 +72,20 @@ def test_mean_torques_end_where_the_engine_does(trucks: Trucks) -> None:
     assert attained(moved).torques == pytest.approx((980.0, 2375.0))
     with pytest.raises(ModelError, match="carries no torque"):
         carrying(Trucks.of(shipped("passenger_car_dmf")).two_stage)
+
+
+def test_idle_takes_a_lash_that_the_free_motion_fits_into(trucks: Trucks) -> None:
+    """2° as on the shipped truck, 3° with a light primary flywheel, which swings more."""
+    own, wide = roomy(trucks.dmf, 20.0), roomy(replaced(trucks.dmf, "primary", inertia=0.2), 20.0)
+    assert np.rad2deg(own.lash) == pytest.approx(2.0) and 1.2 * own.free < own.lash
+    assert np.rad2deg(wide.lash) == pytest.approx(3.0) and 1.2 * wide.free > own.lash
+
+
+def test_what_is_said_of_the_lashes_is_what_was_found(trucks: Trucks) -> None:
+    """The reason of damping is given where the more there is of it the smaller a lash must be, and not otherwise."""
+    none, some = np.inf, 250.0
+    assert _reason(trucks.dmf, {20.0: [some] * 5, 10.0: [some] * 5}) == ""
+    assert "acts within the lash" in _reason(trucks.dmf, {20.0: [some, some, none, none, none], 10.0: [some] * 5})
+    odd = _reason(trucks.dmf, {20.0: [none] * 5, 10.0: [none, some, none, some, none]})
+    assert odd == "pulses of up to 1000 Nm leave no lasting vibration but with lashes of 2, 4° with 10 Nms/rad"
+    assert "at any lash" in _reason(trucks.dmf, {20.0: [none] * 5})
