@@ -12,6 +12,7 @@ from torsional.files import changed
 from torsional.laws import Jenkins
 from torsional.studies.claims.friction import HIGHER, LIMITS, apart, condition, far, limits_of, names, rubbed
 from torsional.studies.claims.idle import _reason, roomy
+from torsional.studies.claims.longer_steps import _why
 from torsional.studies.concepts import Scale
 from torsional.studies.friction import AROUND, STICKING, WASHER, around, clutch_speed
 from torsional.studies.stiffness_step import attained, carrying
@@ -89,3 +90,13 @@ def test_what_is_said_of_the_lashes_is_what_was_found(trucks: Trucks) -> None:
     odd = _reason(trucks.dmf, {20.0: [none] * 5, 10.0: [none, some, none, some, none]})
     assert odd == "pulses of up to 1000 Nm leave no lasting vibration but with lashes of 2, 4° with 10 Nms/rad"
     assert "at any lash" in _reason(trucks.dmf, {20.0: [none] * 5})
+
+
+def test_the_mechanism_of_longer_steps_is_told_where_it_shows() -> None:
+    """Lost runs with radius 1 and 0.8, none with 0.5, more error with 0 than with 0.5, nothing gained when closed."""
+    fine, lost = np.full(6, 0.01), np.array([0.01, 0.01, 0.01, 0.01, 1.0, 1.0])
+    table = {1.0: lost, 0.8: lost, 0.5: fine, 0.0: 2.0 * fine}
+    assert "from 0.5 ms on" in _why([table], closed=True)
+    assert _why([table], closed=False) == ""
+    for radius, other in ((1.0, fine), (0.8, fine), (0.5, lost), (0.0, fine)):
+        assert _why([{**table, radius: other}], closed=True) == ""

@@ -69,7 +69,7 @@ def g4(trucks: Trucks) -> Finding:
     named = data.sel(engine=[WHOLE, SECOND, SHORTER])
     moved = bool((strongest(named) == named.firing_order).all())
     others = "" if moved else "the strongest orders are not all those of the cylinders that fire"
-    reason = "; ".join(text for text in (others, MECHANISM, _quieter(data)) if text)
+    reason = "; ".join(text for text in (others, MECHANISM if more and moved else "", _quieter(data)) if text)
     condition = CONDITION.format(cylinders=f"{2 * firing_order(models['SMF'][SHORTER]):g}")
     return Finding(more and moved, condition, figures, reason, data)
 

@@ -24,8 +24,9 @@ from torsional.studies.swept import Curve, over_speed, swept
 from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM
 
-CROSSING = 0.5
-"""The firing order is near a zero crossing where the engine's own is below this share of its median over speed."""
+CROSSING, MEETS = 0.5, 0.1
+"""The firing order is near a zero crossing where the engine's own is below this share of its median over speed; an order
+meets a mode within this share of its frequency."""
 STEP = 25 * RPM
 
 
@@ -109,18 +110,18 @@ def _other_orders(model: Model, speed: Array, torque: xr.DataArray, short: BoolA
     frequency = n * speed[place] / (2 * np.pi)
     near = modes(model).frequency.values
     near = near[np.abs(near / frequency - 1).argmin()]
+    meets = f"meets a mode at {near:.0f} Hz" if abs(near / frequency - 1) < MEETS else "meets no mode"
     return (
         f"from {speed[short][0] / RPM:.0f} rpm orders {strongest.min():g} and {strongest.max():g} show. There the line "
         f"isolates the firing order so well that {own.values[place]:.0f} Nm are left of it at "
         f"{speed[place] / RPM:.0f} rpm ({own.values.max():.0f} Nm at its resonance), while order {n:g} has "
-        f"{frequency:.0f} Hz, meets a mode at {near:.0f} Hz and brings {float(loudest.max()):.0f} Nm. Orders that "
+        f"{frequency:.0f} Hz, {meets} and brings {float(loudest.max()):.0f} Nm. Orders that "
         f"are no multiples of {main:g} leave a flexible crankshaft alone: with a rigid one the cylinders cancel them, "
         f"and the share never falls below {100 * rigid[~crossing(model, speed)].min():.0f} %. In torque the claim "
         "stands: away from its crossings the firing order is the largest of all at every speed"
         if (own.values > others.max("order").values)[~crossing(model, speed)].all()
         else f"from {speed[short][0] / RPM:.0f} rpm orders {strongest.min():g} and {strongest.max():g} show, and order "
-        f"{n:g} is larger than the firing order at {speed[place] / RPM:.0f} rpm: at {frequency:.0f} Hz it meets a "
-        f"mode at {near:.0f} Hz"
+        f"{n:g} is larger than the firing order at {speed[place] / RPM:.0f} rpm: at {frequency:.0f} Hz it {meets}"
     )
 
 

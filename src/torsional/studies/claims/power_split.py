@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.answers import (
@@ -154,6 +155,9 @@ def c3(trucks: Trucks) -> Finding:
     at = np.array([cancelled(model) for model in variants])
     speed = speeds(trucks.psva)
     speed = speed[speed > 1.25 * at[0]]
+    if not speed.size:
+        refused = {"found": f"cancellation up to {at[0] / RPM:.0f} rpm", "remedy": "widen operation.speed"}
+        raise ModelError("no speed of the range lies well above the cancellation", where="operation.speed", **refused)
     table = np.array([at_input(model, speed) for model in variants])
     figures: dict[str, Figure] = {
         "r [-] (as in §2.2.5: lower lowers)": floats(quotient),
@@ -174,7 +178,8 @@ def c3(trucks: Trucks) -> Finding:
     }
     along = Along("gear_quotient", quotient, "ratio", "quotient r, as in §2.2.5", inverse="quotient 1/r, as in §6.1")
     data = swept("C3", along, told)
-    return Finding(falling(at) and rising(table), INPUT, figures, READINGS, data)
+    good = falling(at) and rising(table)
+    return Finding(good, INPUT, figures, READINGS if good else "", data)
 
 
 @claim(
