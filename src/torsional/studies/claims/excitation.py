@@ -25,8 +25,8 @@ from torsional.studies.trucks import Trucks, lumped
 from torsional.units import RPM
 
 CROSSING, MEETS = 0.5, 0.1
-"""The firing order is near a zero crossing where the engine's own is below this share of its median over speed; an order
-meets a mode within this share of its frequency."""
+"""The firing order is near a zero crossing where the engine's own is below this share of its median over speed; an
+order meets a mode within this share of its frequency."""
 STEP = 25 * RPM
 
 
