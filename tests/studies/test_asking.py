@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import multiprocessing
-import os
-import signal
-import subprocess
-import sys
-import time
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.shipped import ROOT, shipped
+from tests.shipped import shipped
 
 from torsional.errors import ModelError
 from torsional.files import changed
@@ -24,7 +18,6 @@ from torsional.studies.base import Finding
 from torsional.studies.register import claims
 from torsional.studies.robustness import PARAMETERS, Answer, Samples, judged, parameters_of, varied, wilson
 from torsional.studies.trucks import Trucks
-from torsional.studies.workers import Workers
 
 TRUCKS = Trucks.shipped()
 DOUBLE = ("dmf", "pendulum", "planetary", "tva", "two_stage", "arc_spring")
@@ -314,59 +307,3 @@ def test_thorough_asks_dear_claims_of_all(monkeypatch: pytest.MonkeyPatch) -> No
     )
     assert (few.asked, few.alone) == (1, 0) and all_of_them.asked == 2 and all_of_them.alone > 100
     assert known["E1"].asked_of(200).trucks == 0
-
-
-def ready() -> None:
-    """Nothing to prepare."""
-
-
-def ended(number: int) -> int:
-    """A process that dies of a number, as one that the system kills."""
-    if number == 3:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return number
-
-
-def threads(_: int) -> str:
-    """How many threads a process may have."""
-    return os.environ["OPENBLAS_NUM_THREADS"]
-
-
-INTERRUPTED = """
-import time
-from tests.studies.test_asking import ready
-from torsional.studies.workers import Workers
-
-if __name__ == "__main__":
-    with Workers(time.sleep, ready, (), 2) as workers:
-        for _ in workers.results([60, 60, 60]):
-            pass
-"""
-
-
-class TestWorkers:
-    """Processes, and how they end."""
-
-    def test_a_process_that_dies_is_told(self) -> None:
-        with pytest.raises(ModelError, match="ended before its work was done"), Workers(ended, ready, (), 2) as workers:
-            list(workers.results(range(6)))
-        assert not multiprocessing.active_children()
-
-    def test_each_has_one_thread_and_the_environment_stays(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
-        monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
-        with Workers(threads, ready, (), 2) as workers:
-            assert list(workers.results(range(3))) == ["1"] * 3
-        assert os.environ["OPENBLAS_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
-
-    @pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are sent signals otherwise there")
-    def test_ctrl_c_ends_all_at_once_and_without_tracebacks_of_theirs(self) -> None:
-        script = subprocess.Popen(
-            [sys.executable, "-c", INTERRUPTED], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
-        )
-        time.sleep(6.0)
-        begun = time.monotonic()
-        os.killpg(script.pid, signal.SIGINT)
-        _, told = script.communicate(timeout=20)
-        assert time.monotonic() - begun < 3.0
-        assert told.count("Traceback") == 1 and told.rstrip().endswith("KeyboardInterrupt")

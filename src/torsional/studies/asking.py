@@ -16,13 +16,14 @@ from torsional.errors import ModelError, nearest
 from torsional.numerics.compiling import WATCH
 from torsional.studies.base import MANY, Finding, Outcome, Study
 from torsional.studies.concepts import absorbers, built
+from torsional.studies.crew import Crew, Lost
 from torsional.studies.register import claims
 from torsional.studies.robustness import PARAMETERS, SEED, Answer, Robustness, Samples, judged, parameters_of, varied
 from torsional.studies.trucks import Trucks
-from torsional.studies.workers import Workers
 
 ENOUGH = 100
 """A claim that is asked of fewer trucks is not asked of those with one other parameter, which are as many."""
+SHORT = "ask fewer processes at a time, where memory is short"
 COMPILING = ("A1", "A2", "A5", "A12", "D1")
 """Quick claims that between them run most compiled functions: asked first, so that no two processes compile one."""
 
@@ -129,10 +130,14 @@ def _replies(
     lone = [id for id, study in studies.items() if study.trucks >= ENOUGH and samples.many]
     total = len(studies) + sum(fewest.values()) + len(lone) * (len(samples) - samples.many)
     found: list[Reply] = []
-    with Workers(_answered, _prepare, given, processes) as workers:
+    with Crew(_answered, _prepare, given, processes) as crew:
 
         def collect(pieces: list[Piece]) -> None:
-            for replies in workers.results(pieces):
+            for _, replies in crew.results(pieces):
+                if isinstance(replies, Lost):
+                    raise ModelError(
+                        "a working process ended before its work was done", where="processes", remedy=SHORT
+                    )
                 found.extend(replies)
                 progress(len(found), total)
 

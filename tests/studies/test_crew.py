@@ -1,0 +1,116 @@
+"""Processes side by side: what they inherit, how they end, what one of them dies of."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from torsional.errors import ModelError
+from torsional.studies.crew import NOWHERE, Crew, Lost, marked
+
+ROOT = Path(__file__).parents[2]
+
+
+def ready() -> None:
+    """Nothing to prepare."""
+
+
+def ended(number: int) -> int:
+    """A process that dies of a number, as one that the system kills."""
+    marked(10 * number)
+    if number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def refused(number: int) -> int:
+    """A task that is refused."""
+    raise ModelError("no such number", found=str(number))
+
+
+def threads(_: int) -> str:
+    """How many threads a process may have."""
+    return os.environ["OPENBLAS_NUM_THREADS"]
+
+
+INTERRUPTED = """
+import time
+from tests.studies.test_crew import ready
+from torsional.studies.crew import Crew
+
+if __name__ == "__main__":
+    with Crew(time.sleep, ready, (), 2) as crew:
+        for _ in crew.results([60, 60, 60]):
+            pass
+"""
+ORPHANED = INTERRUPTED.replace("[60, 60, 60]", "[5.0, 5.0]")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
+def test_a_process_that_dies_costs_its_task_alone() -> None:
+    with Crew(ended, ready, (), 2) as crew:
+        found = dict(crew.results(range(6)))
+        assert found.pop(3) == Lost(30, -signal.SIGKILL)
+        assert found == {number: number for number in (0, 1, 2, 4, 5)}
+        assert dict(crew.results([7])) == {7: 7}
+    assert not multiprocessing.active_children()
+
+
+def test_what_a_task_raises_is_raised_here() -> None:
+    with pytest.raises(ModelError, match="no such number; found 4"), Crew(refused, ready, (), 2) as crew:
+        list(crew.results([4, 5]))
+    assert not multiprocessing.active_children()
+
+
+def test_one_process_is_this_one() -> None:
+    with Crew(threading_free, ready, (), 1) as crew:
+        assert list(crew.results([1])) == [(1, os.getpid())]
+
+
+def threading_free(_: int) -> int:
+    """The process that does it; marks are for others."""
+    marked(NOWHERE)
+    return os.getpid()
+
+
+def test_each_has_one_thread_and_the_environment_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with Crew(threads, ready, (), 2) as crew:
+        assert [told for _, told in crew.results(range(3))] == ["1"] * 3
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
+
+
+def begun(script: str) -> subprocess.Popen[str]:
+    """A script with two processes at work."""
+    return subprocess.Popen(
+        [sys.executable, "-c", script], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are sent signals otherwise there")
+def test_ctrl_c_ends_all_at_once_and_without_tracebacks_of_theirs() -> None:
+    script = begun(INTERRUPTED)
+    time.sleep(6.0)
+    since = time.monotonic()
+    os.killpg(script.pid, signal.SIGINT)
+    _, told = script.communicate(timeout=20)
+    assert time.monotonic() - since < 3.0
+    assert told.count("Traceback") == 1 and told.rstrip().endswith("KeyboardInterrupt")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are told apart otherwise there")
+def test_who_loses_the_one_that_asked_ends_by_itself_and_quietly() -> None:
+    script = begun(ORPHANED)
+    time.sleep(5.0)
+    since = time.monotonic()
+    script.kill()
+    _, told = script.communicate(timeout=20)  # ends when they have: they hold the stream too
+    assert time.monotonic() - since > 0.3 and "Traceback" not in told
