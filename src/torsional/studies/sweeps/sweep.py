@@ -1,0 +1,232 @@
+"""One analysis of many designs: in memory or in a folder that can be gone back to, on any number of processes."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import inspect
+import json
+import os
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from torsional import __version__
+from torsional.errors import ModelError
+from torsional.model import Model
+from torsional.studies.crew import NOWHERE, Crew, Lost
+from torsional.studies.sweeps.designs import Designs, grid
+from torsional.studies.sweeps.store import Store, digest, written
+from torsional.studies.sweeps.work import CRASHES, STATUS, Build, Run, Work
+
+CHUNK = 100
+"""Designs of a chunk unless told."""
+ASIDE = "crashes.json"
+Progress = Callable[[int, int], None]
+
+
+def sweep(
+    build: Build,
+    over: Designs | Mapping[str, Sequence[Any]],
+    run: Run,
+    *,
+    folder: str | os.PathLike[str] | None = None,
+    chunk: int = CHUNK,
+    processes: int | None = 1,
+    progress: Progress = lambda done, total: None,
+) -> xr.Dataset:
+    """The answers of ``run`` for every design, with the designs as a dimension, or a dimension a parameter of a grid.
+
+    ``build``: a model whose key paths are changed, or a function of the named values that makes one; ``over``: designs,
+    or levels by parameter for all their combinations; ``run``: a function of a model that gives a Dataset, or figures
+    by name.  A design without an answer has NaN, a ``status`` other than 0 and a ``reason``.  With a ``folder`` all
+    that was worked out is kept there in pieces of ``chunk`` designs, and the same call goes on where it was ended.
+    The figures are the same whatever the number of ``processes`` (None: one a processor) and the size of a chunk.
+
+    Raises ModelError for designs that cannot be, a folder that holds another sweep or cannot be written, and where no
+    process can work.
+
+    >>> from torsional.files.load import load_model
+    >>> truck = load_model("examples/truck_dmf.yaml")
+    >>> found = sweep(truck, {"clutch.stiffness": [2e4, -1.0]}, lambda model: {"gears": len(model.gears)})
+    >>> found.gears.values.tolist(), found.status.values.tolist()
+    ([12, 0], [0, 1])
+    """
+    designs = over if isinstance(over, Designs) else grid(over)
+    if chunk < 1:
+        raise ModelError("a chunk has at least one design", where="chunk", found=str(chunk))
+    work = Work(build, designs, run)
+    with contextlib.ExitStack() as stack:
+        at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
+        try:
+            pieces = Pieces(Store.begun(at, _plan(work), f"{code()} by {chunk}"), work, chunk)
+            pieces.worked(processes, progress)
+        except OSError as error:
+            raise ModelError("the folder of the sweep cannot be written", where=str(at), found=str(error)) from None
+        return pieces.collected()
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A sweep cut into chunks of ``size`` designs that lie in a ``store``."""
+
+    store: Store
+    work: Work
+    size: int
+
+    @property
+    def count(self) -> int:
+        """How many chunks there are."""
+        return -(-len(self.work.designs) // self.size)
+
+    def worked(self, processes: int | None, progress: Progress) -> None:
+        """Work on what is missing until nothing is."""
+        designs, missing = len(self.work.designs), self.store.missing(self.count)
+        done = designs - sum(self._length(number) for number in missing)
+        progress(done, designs)
+        with Crew(_work, _prepare, (self,), processes) as crew:
+            while missing:
+                again = []
+                for number, told in crew.results(missing):
+                    if isinstance(told, Lost):
+                        self._lost(number, told)
+                        again.append(number)
+                        continue
+                    done += self._length(number)
+                    progress(done, designs)
+                missing = again
+
+    def made(self, number: int) -> None:
+        """Work on one chunk and keep it."""
+        start = number * self.size
+        aside = {design for design, times in self._crashes().items() if times >= CRASHES}
+        self.store.put(number, self.work.stretch(start, start + self._length(number), aside))
+
+    def _length(self, number: int) -> int:
+        return min(self.size, len(self.work.designs) - number * self.size)
+
+    def _lost(self, number: int, lost: Lost) -> None:
+        """Note at which design a process died; a chunk that none can begin is refused."""
+        at = lost.mark if lost.mark != NOWHERE else -1 - number
+        crashes = self._crashes() + Counter([at])
+        written(self.store.folder / ASIDE, json.dumps(crashes).encode())
+        if at < 0 and crashes[at] >= CRASHES:
+            remedy = "guard the script's main part by if __name__ == '__main__', or ask with one process"
+            found = f"ended with exit code {lost.code}"
+            raise ModelError("no process can work on the sweep", where="processes", found=found, remedy=remedy)
+
+    def _crashes(self) -> Counter[int]:
+        try:
+            told = json.loads((self.store.folder / ASIDE).read_text(encoding="utf-8"))
+        except (FileNotFoundError, ValueError):
+            return Counter()
+        return Counter({int(design): int(times) for design, times in told.items()})
+
+    def collected(self) -> xr.Dataset:
+        """All chunks as one Dataset."""
+        chunks = [self.store.get(number) for number in range(self.count)]
+        status = np.concatenate([each["status"] for each in chunks if each is not None])
+        told = [json.loads(each["told"].tobytes()) for each in chunks if each is not None]
+        reasons = {int(number): reason for each in told for number, reason in each["reasons"].items()}
+        shape: Any = next((each["shape"] for each in told if each["shape"]), {"variables": {}, "coordinates": {}})
+        data = {
+            name: (("design", *dims), _joined(chunks, f"answer.{name}", status.size, size, kind), attrs)
+            for name, (dims, size, kind, attrs) in shape["variables"].items()
+        }
+        labels = {name: (dims, values, attrs) for name, (dims, values, attrs) in shape["coordinates"].items()}
+        texts = np.array([reasons.get(number, "") for number in range(status.size)])
+        found = xr.Dataset({**data, "status": ("design", status), "reason": ("design", texts)}, labels)
+        found.status.attrs |= {"flag_values": list(range(len(STATUS))), "flag_meanings": "; ".join(STATUS)}
+        counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
+        found = found.assign_attrs(analysis="sweep", torsional_version=__version__, **counts)
+        return _on_axes(found, self.work.designs)
+
+
+def _joined(
+    chunks: Sequence[Mapping[str, np.ndarray] | None], name: str, count: int, size: Sequence[int], kind: str
+) -> np.ndarray:
+    """The answers by one name; where a chunk has none of them, as none of its designs was answered, no numbers."""
+    dtype = np.dtype(kind)
+    found, at = np.full((count, *size), np.nan if dtype.kind in "fc" else np.zeros((), dtype)[()], dtype), 0
+    for each in chunks:
+        assert each is not None  # collected when none is missing
+        length = each["status"].size
+        if name in each:
+            found[at : at + length] = each[name]
+        at += length
+    return found
+
+
+def _on_axes(data: xr.Dataset, designs: Designs) -> xr.Dataset:
+    """The designs' values as coordinates: of a grid a dimension each, else along ``design``."""
+    if designs.method != "grid":
+        columns = designs.columns(0, len(designs))
+        return data.assign_coords({name: ("design", _labels(values)) for name, values in columns.items()})
+    shape = {name: len(axis.levels) for name, axis in designs.axes.items()}
+    dims = tuple(shape)
+    found = {}
+    for name, values in data.data_vars.items():
+        reshaped = values.values.reshape(*shape.values(), *values.shape[1:])
+        found[name] = (dims + values.dims[1:], reshaped, values.attrs)
+    labels = {name: (name, _labels(axis.levels)) for name, axis in designs.axes.items()}
+    return xr.Dataset(found, {**data.coords, **labels}, data.attrs)
+
+
+def _labels(values: Any) -> np.ndarray:
+    listed = list(values)
+    plain = all(isinstance(value, int | float | str | bool) for value in listed)
+    same = len({isinstance(value, str) for value in listed}) == 1
+    return np.array(listed if plain and same else [json.dumps(value) for value in listed])
+
+
+def _plan(work: Work) -> dict[str, Any]:
+    """What the sweep is, as plain values: the same for the same sweep."""
+    build = work.build.hash if isinstance(work.build, Model) else _source(work.build)
+    axes = {
+        name: list(axis.levels) or {"low": axis.low, "high": axis.high, "log": axis.log}
+        for name, axis in work.designs.axes.items()
+    }
+    designs = {"method": work.designs.method, "count": len(work.designs), "seed": work.designs.seed, "axes": axes}
+    return {"torsional_sweep": 1, "build": build, "designs": designs, "run": _source(work.run)}
+
+
+def _source(function: Any) -> str:
+    """A function by its name and its text, as far as it has one."""
+    if isinstance(function, partial):
+        given = [repr(each) for each in (*function.args, *sorted(function.keywords.items()))]
+        return digest([_source(function.func), given])
+    name = f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', repr(type(function)))}"
+    with contextlib.suppress(OSError, TypeError):
+        return f"{name} {digest(inspect.getsource(function))[:16]}"
+    return name
+
+
+@cache
+def code() -> str:
+    """The version of this package and a hash of all its sources: other code may answer otherwise."""
+    told = hashlib.sha256(__version__.encode())
+    for source in _sources():
+        told.update(source.read_bytes())
+    return told.hexdigest()
+
+
+def _sources() -> Iterator[Path]:
+    yield from sorted(Path(__file__).parents[2].rglob("*.py"))
+
+
+_HERE: dict[str, Pieces] = {}
+
+
+def _prepare(pieces: Pieces) -> None:
+    _HERE["pieces"] = pieces
+
+
+def _work(number: int) -> None:
+    _HERE["pieces"].made(number)
