@@ -146,7 +146,7 @@ def conventions(asked: Asked) -> Section:
     texts = [
         "The claims are statements of L. Wramner, Torsional vibration absorbers in heavy-duty truck powertrains: "
         "simulation and analysis of multiple-mass flywheel concepts, PhD thesis, Chalmers University of Technology, "
-        "2020, in our words; the criteria are ours and were fixed beforehand.",
+        "2020, in our words; the criteria are ours.",
         "Amplitudes are half peak-to-peak of an order, or half the swing over one engine cycle where said, of the "
         "angular acceleration, torque or angle at the gearbox input unless said otherwise. The order speed of a mode "
         "is the engine speed at which the firing order meets it.",
