@@ -150,7 +150,7 @@ def test_a_folder_of_another_sweep_is_refused(tmp_path: Path) -> None:
         sweep(TRUCK, {"clutch.stiffness": [3e4]}, counted, folder=tmp_path)
     with pytest.raises(ModelError, match="holds the sweep of another plan"):
         sweep(TRUCK, {"clutch.stiffness": [2e4]}, answered, folder=tmp_path)
-    with pytest.raises(ModelError, match="cannot be (written|read)"):
+    with pytest.raises(ModelError, match=r"cannot be (written|read)"):
         sweep(TRUCK, {"clutch.stiffness": [3e4]}, counted, folder=tmp_path / "plan.json" / "x")
     with pytest.raises(ModelError, match="a chunk has at least one design; found 0"):
         sweep(TRUCK, {"clutch.stiffness": [2e4]}, counted, chunk=0)
