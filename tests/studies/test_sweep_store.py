@@ -104,7 +104,7 @@ def test_torn_chunks_are_asked_again(tmp_path: Path) -> None:
     store.path(1).write_bytes(whole[:-3])
     store.path(2).unlink()
     again = Store.begun(tmp_path / "sweep", PLAN, "code")
-    assert again.missing(5) == [1, 2, 4] and not store.path(1).exists()
+    assert again.missing(5) == [1, 2, 4]
     assert again.get(0) is not None and again.get(1) is None
     other = Store.begun(tmp_path / "sweep", PLAN, "other code")
     assert other.missing(4) == [0, 1, 2, 3] and again.missing(5) == [1, 2, 4]

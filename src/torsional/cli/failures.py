@@ -14,7 +14,7 @@ from typing import Any
 from torsional.cli.interrupts import Kept, listening
 from torsional.errors import TorsionalError
 
-DONE, FAILED, MENDABLE, STOPPED, UNREAD = 0, 1, 2, 130, 141
+DONE, FAILED, MENDABLE, PARTLY, STOPPED, UNREAD = 0, 1, 2, 3, 130, 141
 DEBUG = "TORSIONAL_DEBUG"
 
 
@@ -32,6 +32,10 @@ def guarded(arguments: Sequence[str] | None) -> int:
             return _run(list(sys.argv[1:] if arguments is None else arguments))
         except BaseException as failure:  # every failure has its sentence
             return told(failure)
+
+
+class UnansweredError(Exception):
+    """The work is done and written, but a part of what was asked has no answer; the message says which."""
 
 
 @contextmanager
@@ -116,6 +120,11 @@ def _unread(_: BaseException) -> int:
     return UNREAD
 
 
+def _partly(failure: BaseException) -> int:
+    complain(str(failure), kind="warning")
+    return PARTLY
+
+
 def _full_memory(_: BaseException) -> int:
     complain("there is not enough memory for this; ask for fewer speeds, torques, orders or gears")
     return FAILED
@@ -136,6 +145,7 @@ def _exits(failure: BaseException) -> int:
 
 _ANSWERS: tuple[tuple[type[BaseException], Callable[[BaseException], int]], ...] = (
     (TorsionalError, _mendable),
+    (UnansweredError, _partly),
     (Kept, _kept),
     (KeyboardInterrupt, _stopped),
     (BrokenPipeError, _unread),

@@ -220,3 +220,11 @@ Processes = Annotated[
     int,
     typer.Option("--processes", metavar="N", min=0, help="Processes side by side; 0: one a core.", show_default=False),
 ]
+
+PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="Plan of a sweep (YAML or JSON).", show_default=False)]
+Folder = Annotated[
+    Path | None,
+    _taking("--folder", metavar="FOLDER", help="Where pieces are kept; default: the plan's name and .sweep."),
+]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")]
+Status = Annotated[bool, typer.Option("--status", help="Tell how far the folder is, and do nothing.")]

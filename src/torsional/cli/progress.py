@@ -48,3 +48,24 @@ def running(task: str, quiet: bool) -> Iterator[Callable[[float, float, float], 
             bar.update(number, completed=time, total=end, told=told)
 
         yield moved
+
+
+@contextmanager
+def counting(task: str, things: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """A function (done, total) that tells how many ``things`` are done, how many a second, and the time left."""
+    if quiet or not styled(sys.stderr):
+        yield lambda done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    rate = TextColumn("{task.fields[rate]}")
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), rate, TimeRemainingColumn()
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        number = bar.add_task(task, total=None, rate="")
+
+        def moved(done: int, total: int) -> None:
+            speed = bar.tasks[number].speed
+            bar.update(number, completed=done, total=total, rate=f"{speed:.3g} {things}/s" if speed else "")
+
+        yield moved

@@ -54,6 +54,9 @@ class Finding:
     measured: Mapping[str, Figure] = field(default_factory=dict, compare=False)
 
 
+VERDICTS = ("reproduced", "reproduced with a condition", "not reproduced", "not answered")
+
+
 @dataclass(frozen=True)
 class Outcome:
     """A claim beside what was found."""
@@ -65,10 +68,10 @@ class Outcome:
     def verdict(self) -> str:
         """Reproduced, reproduced with a condition or not, or not answered, in words."""
         if self.finding.reproduced is None:
-            return "not answered"
+            return VERDICTS[3]
         if not self.finding.reproduced:
-            return "not reproduced"
-        return "reproduced with a condition" if self.finding.proviso else "reproduced"
+            return VERDICTS[2]
+        return VERDICTS[1] if self.finding.proviso else VERDICTS[0]
 
     def __str__(self) -> str:
         found = {**self.finding.figures, **self.finding.measured}

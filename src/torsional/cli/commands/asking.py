@@ -33,6 +33,25 @@ def claims(
     return job("claims", **locals())
 
 
+@app.command()
+def sweep(
+    plan: o.PlanFile,
+    folder: o.Folder = None,
+    resume: o.Resume = False,
+    status: o.Status = False,
+    processes: o.Processes = 0,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """One analysis of many designs.
+
+    Model, parameters, designs and analysis stand in a plan.  What is worked out is kept in a folder piece by piece;
+    stopped in the middle, --resume goes on.  Exit code 3 where some designs have no answer.
+    """
+    return job("sweep", **locals())
+
+
 app.add_typer(
     typer.Typer(cls=StudyGroup, rich_markup_mode=None),
     name="study",

@@ -73,7 +73,7 @@ def draw_motions(data: xr.Dataset) -> Picture:
     return plot_doubling(data)
 
 
-SWEPT = {"k2": "k2 varied", "k1": "k1 varied", "light": "k2 varied, {damping:g} Nms/rad (reported)"}
+SWEPT = {"k2": "k2 varied", "k1": "k1 varied", "light": "k2 varied, {damping:.4g} Nms/rad (reported)"}
 """What each sweep varies."""
 
 

@@ -46,15 +46,15 @@ UNITS = {SPRING: "Nm", SHAFT: "Nm", INPUT_ACCELERATION: "rad/s²", TWIST: "rad"}
 KINDS = {SPRING: "torque", SHAFT: "torque", INPUT_ACCELERATION: "acceleration", TWIST: "relative_angle"}
 JUDGED, JUDGED_SWEEPS, STRAIGHT = (SPRING, SHAFT), ("k2", "k1"), 0.97
 CONDITION = (
-    "two-stage DMF, transition {transition:.0f} Nm, {damping:g} Nms/rad, its stop left out, top gear; order {half:g}, "
-    "0-peak, each the largest over speed and mean torque; k2 varied at k1 = {soft:g} kNm/rad, k1 at k2 = {stiff:g} "
-    "kNm/rad"
+    "two-stage DMF, transition {transition:.0f} Nm, {damping:.4g} Nms/rad, its stop left out, top gear; order "
+    "{half:g}, 0-peak, each the largest over speed and mean torque; k2 varied at k1 = {soft:.4g} kNm/rad, k1 at "
+    "k2 = {stiff:.4g} kNm/rad"
 )
 SETTLING = 400
 """Periods of the firing in which a motion in time settles."""
 SATURATES = "torques grow almost in proportion, while the twist grows less and less as the second stage gets stiffer"
 BELOW = (
-    "at the model's damping; with {damping:g} Nms/rad, at small differences, the largest {quantities} lies at "
+    "at the model's damping; with {damping:.4g} Nms/rad, at small differences, the largest {quantities} lies at "
     "{lowest:.0f} Nm, below the transition. Near {speed:.0f} rpm order {half:g} meets a natural frequency of the line "
     "behind the clutch hub, which takes hardly any torque there"
 )
@@ -195,6 +195,7 @@ def b2(trucks: Trucks) -> Finding:
     )
     good, bent = spring > STRAIGHT, shaft <= STRAIGHT
     reason = SATURATES if _bent(found["k2"], TWIST) < _bent(found["k2"], SPRING) else ""
+    reason = reason if good else f"the torque in the springs is no straight line (R² {spring:.3f})"
     at = {"speed": quiet_speed(model) / RPM, "half": _half(model)}
     return Finding(
         good, _condition(model), figures, reason, data, BENT.format(least=shaft, **at) if good and bent else ""
@@ -212,7 +213,7 @@ def _condition(model: Model) -> str:
 
 
 def _told(name: str, sweep: Sweep) -> str:
-    return f"{sweep.damping:g} Nms/rad, k2 varied" if name == "light" else f"{name} varied"
+    return f"{sweep.damping:.4g} Nms/rad, k2 varied" if name == "light" else f"{name} varied"
 
 
 def _straight(sweep: Sweep, quantity: int) -> float:

@@ -126,13 +126,8 @@ class Store:
             return None
 
     def missing(self, count: int) -> list[int]:
-        """The numbers of chunks, of ``count``, that are not there or not whole; torn ones are removed."""
-        absent = []
-        for number in range(count):
-            if self.get(number) is None:
-                self.path(number).unlink(missing_ok=True)
-                absent.append(number)
-        return absent
+        """The numbers of chunks, of ``count``, that are not there or not whole."""
+        return [number for number in range(count) if self.get(number) is None]
 
 
 def plan_in(folder: str | os.PathLike[str]) -> dict[str, Any] | None:

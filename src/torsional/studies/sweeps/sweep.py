@@ -21,6 +21,7 @@ import xarray as xr
 from torsional import __version__
 from torsional.errors import ModelError
 from torsional.model import Model
+from torsional.results import SCHEMA
 from torsional.studies.crew import NOWHERE, Crew, Lost
 from torsional.studies.sweeps.designs import Designs, grid
 from torsional.studies.sweeps.store import Store, digest, written
@@ -62,14 +63,10 @@ def sweep(
     designs = over if isinstance(over, Designs) else grid(over)
     if chunk < 1:
         raise ModelError("a chunk has at least one design", where="chunk", found=str(chunk))
-    work = Work(build, designs, run)
     with contextlib.ExitStack() as stack:
         at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
-        try:
-            pieces = Pieces(Store.begun(at, _plan(work), f"{code()} by {chunk}"), work, chunk)
-            pieces.worked(processes, progress)
-        except OSError as error:
-            raise ModelError("the folder of the sweep cannot be written", where=str(at), found=str(error)) from None
+        pieces = Pieces.of(Work(build, designs, run), at, chunk)
+        pieces.worked(processes, progress)
         return pieces.collected()
 
 
@@ -81,15 +78,25 @@ class Pieces:
     work: Work
     size: int
 
+    @classmethod
+    def of(cls, work: Work, folder: str | os.PathLike[str], size: int) -> Pieces:
+        """The pieces of some work in a folder, which is made; raises ModelError where it cannot be."""
+        with _writing(folder):
+            return cls(Store.begun(folder, _plan(work), f"{code()} by {size}"), work, size)
+
     @property
     def count(self) -> int:
         """How many chunks there are."""
         return -(-len(self.work.designs) // self.size)
 
     def worked(self, processes: int | None, progress: Progress) -> None:
-        """Work on what is missing until nothing is."""
+        """Work on what is missing until nothing is; raises ModelError where the folder cannot be written any more."""
+        with _writing(self.store.folder):
+            self._worked(processes, progress)
+
+    def _worked(self, processes: int | None, progress: Progress) -> None:
         designs, missing = len(self.work.designs), self.store.missing(self.count)
-        done = designs - sum(self._length(number) for number in missing)
+        done = designs - sum(self.length(number) for number in missing)
         progress(done, designs)
         with Crew(_work, _prepare, (self,), processes) as crew:
             while missing:
@@ -99,7 +106,7 @@ class Pieces:
                         self._lost(number, told)
                         again.append(number)
                         continue
-                    done += self._length(number)
+                    done += self.length(number)
                     progress(done, designs)
                 missing = again
 
@@ -107,9 +114,10 @@ class Pieces:
         """Work on one chunk and keep it."""
         start = number * self.size
         aside = {design for design, times in self._crashes().items() if times >= CRASHES}
-        self.store.put(number, self.work.stretch(start, start + self._length(number), aside))
+        self.store.put(number, self.work.stretch(start, start + self.length(number), aside))
 
-    def _length(self, number: int) -> int:
+    def length(self, number: int) -> int:
+        """How many designs a chunk has."""
         return min(self.size, len(self.work.designs) - number * self.size)
 
     def _lost(self, number: int, lost: Lost) -> None:
@@ -145,8 +153,19 @@ class Pieces:
         found = xr.Dataset({**data, "status": ("design", status), "reason": ("design", texts)}, labels)
         found.status.attrs |= {"flag_values": list(range(len(STATUS))), "flag_meanings": "; ".join(STATUS)}
         counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
-        found = found.assign_attrs(analysis="sweep", torsional_version=__version__, **counts)
+        found = found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
         return _on_axes(found, self.work.designs)
+
+
+@contextlib.contextmanager
+def _writing(folder: str | os.PathLike[str]) -> Iterator[None]:
+    """What the system says against writing, as a ModelError that names the folder."""
+    try:
+        yield
+    except OSError as error:
+        remedy = "what was worked out is kept: make room, and go on with the same call"
+        found = error.strerror or str(error)
+        raise ModelError("the folder cannot be written", where=str(folder), found=found, remedy=remedy) from None
 
 
 def _joined(
@@ -198,7 +217,9 @@ def _plan(work: Work) -> dict[str, Any]:
 
 
 def _source(function: Any) -> str:
-    """A function by its name and its text, as far as it has one."""
+    """A function by its name and its text, as far as it has one; an analysis of a plan by its settings."""
+    if hasattr(function, "settings"):
+        return digest([type(function).__name__, function.settings])
     if isinstance(function, partial):
         given = [repr(each) for each in (*function.args, *sorted(function.keywords.items()))]
         return digest([_source(function.func), given])

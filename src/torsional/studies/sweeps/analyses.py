@@ -1,0 +1,198 @@
+"""What a sweep may ask of every design: a block of the plan whose keys are the analysis' settings, and its answer."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, TypeAlias
+
+import numpy as np
+import xarray as xr
+from pydantic import Field, PrivateAttr
+
+from torsional.errors import ModelError, nearest
+from torsional.files.scenario_blocks import GearName, Scenario
+from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, Whole
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.quantities import acceleration, order_speed, swing
+from torsional.results import labelled
+from torsional.solvers.map import response_map
+from torsional.solvers.modal import damped_modes, modal
+from torsional.solvers.operating import at_operating_point
+from torsional.solvers.run_up import run_up_response
+from torsional.studies.base import VERDICTS
+from torsional.studies.register import claims
+from torsional.studies.scenarios.running import run_scenario
+from torsional.studies.trucks import Trucks
+
+SpeedRange = Annotated[tuple[float, ...], Quantity("speed", above=0, shape="range")]
+POINTS = 57
+
+
+class Asking(Block):
+    """What a plan asks, as plain values: the ``settings`` that tell one sweep from another."""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All keys with their values in SI."""
+        return self.model_dump(mode="json")
+
+
+class Linear(Asking):
+    """What the linear analyses share: where, under which load, over which speeds."""
+
+    gear: GearName = Field("", description="engaged; default: the last listed")
+    speed: SpeedRange | None = Field(None, description="default: the operating range in 57 points")
+    orders: list[Order] = Field(default_factory=list, description="default: the main order")
+    node: Node = Field("", description="default: the one to be kept quiet")
+
+    def speeds(self, model: Model) -> Array:
+        """The speeds [rad/s] asked."""
+        if self.speed is None:
+            return model.speeds(POINTS)
+        low, high, *step = self.speed
+        return np.arange(low, high + 1e-9 * high, step[0]) if step else np.linspace(low, high, POINTS)
+
+    def asked_orders(self, model: Model) -> Array:
+        """The orders asked."""
+        return np.array(self.orders or model.engine_orders(1), dtype=float)
+
+    def place(self, model: Model) -> str:
+        """The node asked."""
+        place = self.node or model.landmarks.input
+        if not place:
+            raise ModelError("the model names no node to be kept quiet", where="run.node", remedy="name one")
+        return place
+
+
+class ModesRun(Asking):
+    """Natural frequencies: the lowest ``count`` elastic modes in one gear."""
+
+    analysis: Literal["modes"]
+    gear: GearName = Field("", description="engaged; default: the last listed")
+    torque: Torque | None = Field(None, description="mean; default: that of most of the operating range")
+    count: Whole = Field(6, description="of elastic modes told")
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """Their ``frequency``, ``damped_ratio``, ``order_speed`` of the main order; no number where there are fewer."""
+        torque = model.typical_torque() if self.torque is None else self.torque
+        system, _ = at_operating_point(model, torque, self.gear or None)
+        found = modal(system)
+        found = found.isel(mode=np.flatnonzero(found.frequency.values > 0)[: self.count])
+        damped = damped_modes(system)
+        nearest = [int(abs(damped.frequency.values - f).argmin()) for f in found.frequency.values]
+        main = next(iter(model.engine_orders(1)), np.nan)
+        values = {
+            "frequency": (found.frequency.values, "frequency"),
+            "damped_ratio": (damped.damping_ratio.values[nearest], "damping_ratio"),
+            "order_speed": (order_speed(found.frequency, main).values, "speed"),
+        }
+        return labelled(
+            {name: (("mode",), _filled(v, self.count), quantity) for name, (v, quantity) in values.items()},
+            {"mode": (np.arange(self.count), "")},
+            analysis="modes",
+        )
+
+
+class ResponseRun(Linear):
+    """Order response over speed at full load, or under one mean torque."""
+
+    analysis: Literal["response"]
+    torque: Torque | None = Field(None, description="mean; default: full load")
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """The ``acceleration`` of a node, 0-peak, over speed and order."""
+        speeds = self.speeds(model)
+        mean = model.full_load(speeds) if self.torque is None else np.full(speeds.size, self.torque)
+        found = run_up_response(model, speeds, mean, self.gear or None, self.asked_orders(model))
+        size = abs(acceleration(found.angle.sel(node=self.place(model)))).transpose("speed", "order")
+        return labelled(
+            {"acceleration": (("speed", "order"), size.values, "acceleration")},
+            {"speed": (speeds, "speed"), "order": (found.order.values, "engine_order")},
+            analysis="response",
+        )
+
+
+class MapRun(Linear):
+    """The map over speed and mean torque of all gears, and the worst of it gear by gear."""
+
+    analysis: Literal["map"]
+    gears: list[GearName] = Field(default_factory=list, description="default: all of them")
+    torques: Whole = Field(13, description="how many mean torques up to full load")
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """Half the swing of a node's acceleration by the orders asked: the largest in reach of full load, by gear, and
+        where it is."""
+        speeds, torques = self.speeds(model), model.torques(self.torques)
+        found = response_map(
+            model, speeds, torques, self.gears or None, self.asked_orders(model), nodes=[self.place(model)], elements=[]
+        )
+        half = swing(acceleration(found.angle.isel(node=0))).where(found.within_full_load.astype(bool))
+        flat = half.transpose("gear", "mean_torque", "speed").values.reshape(half.sizes["gear"], -1)
+        at = np.nanargmax(np.where(np.isnan(flat), -np.inf, flat), axis=1)
+        row, column = np.unravel_index(at, (torques.size, speeds.size))
+        return labelled(
+            {
+                "acceleration_swing": (("gear",), flat[np.arange(at.size), at], "acceleration"),
+                "worst_speed": (("gear",), speeds[column], "speed"),
+                "worst_torque": (("gear",), torques[row], "torque"),
+            },
+            {"gear": (half.gear.values.astype(str), "")},
+            analysis="map",
+        )
+
+
+class TransientRun(Asking):
+    """A scenario in time, by the name of its kind or of its file."""
+
+    analysis: Literal["transient"]
+    scenario: str = Field(description="name of a kind, or of a file beside the plan")
+    _block: Scenario | None = PrivateAttr(None)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """The values of the scenario, not the name of its file."""
+        return {"analysis": self.analysis, **(self._block.model_dump(mode="json") if self._block else {})}
+
+    def with_scenario(self, block: Scenario) -> TransientRun:
+        """A copy that has read its scenario."""
+        copy = self.model_copy()
+        copy._block = block
+        return copy
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """Largest and smallest ``torque`` and ``twist`` of the springs."""
+        assert self._block is not None  # read with the plan
+        found = run_scenario(model, self._block)
+        springs = [name for name in model.landmarks.springs if name in found.element.values]
+        names = [n for n in ("torque_lowest", "torque_highest", "twist_lowest", "twist_highest") if n in found]
+        return found[names].sel(element=springs).drop_attrs(deep=False)
+
+
+class ClaimsRun(Asking):
+    """Claims of the thesis."""
+
+    analysis: Literal["claims"]
+    ids: list[str] = Field(description="of claims, as A6 or B2", min_length=1)
+
+    def refuse_unknown(self) -> None:
+        """ModelError for an id that no claim has."""
+        for id in self.ids:
+            if id not in claims():
+                raise ModelError("there is no such claim", where="run.ids", found=id, remedy=nearest(id, claims()))
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """The ``verdict`` of each, by its place in `VERDICTS`."""
+        trucks = Trucks.of(model)
+        told = [VERDICTS.index(claims()[id].tried(trucks).verdict) for id in self.ids]
+        data = labelled({"verdict": (("claim",), told, "number")}, {"claim": (self.ids, "")}, analysis="claims")
+        data.verdict.attrs["flag_meanings"] = "; ".join(VERDICTS)
+        return data
+
+
+Analysis: TypeAlias = Annotated[
+    ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun, Field(discriminator="analysis")
+]
+
+
+def _filled(values: Array, count: int) -> Any:
+    return np.append(values, np.full(max(count - values.size, 0), np.nan))[:count]

@@ -1,0 +1,219 @@
+"""Plans of sweeps in files: read as strictly as model files, every key path tried on the model before any work."""
+
+from __future__ import annotations
+
+import copy
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, ValidationError
+
+from torsional.arguments import checked
+from torsional.errors import ModelError
+from torsional.files.edit import changed, put
+from torsional.files.faults import translated
+from torsional.files.load import load_model
+from torsional.files.opening import TABLE_BYTES, read_text
+from torsional.files.reader import read_tree
+from torsional.files.scaling import read_document, values_at
+from torsional.files.scenario import load_scenario
+from torsional.files.scenario_schema import KINDS
+from torsional.files.schema.fields import Block, only_version
+from torsional.model import Model
+from torsional.studies.sweeps.analyses import Analysis, ClaimsRun, TransientRun
+from torsional.studies.sweeps.designs import Axis, Designs, grid, sampled, table
+from torsional.studies.sweeps.sweep import CHUNK
+from torsional.studies.sweeps.work import Run, Work
+from torsional.tables import cells, named, numbers
+from torsional.units import quoted
+
+VERSION, KEY = 1, "torsional_sweep"
+MANY = 10_000_000
+
+
+def _version(value: object) -> object:
+    return only_version(value, VERSION, KEY)
+
+
+class Choice(Block):
+    """How designs are chosen."""
+
+    method: Literal["grid", "latin_hypercube", "sobol", "table"] = "grid"
+    count: Annotated[int, Field(ge=1, le=MANY)] | None = Field(None, description="of hypercubes and Sobol points")
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    file: str = Field("", description="of a table: CSV with key paths as header, beside the plan")
+
+
+class Parameter(Block):
+    """What one key path of the model may be: ``values``, or all from ``low`` to ``high``."""
+
+    parameter: str = Field(description="key path of the model file, as clutch.stiffness")
+    values: list[Any] | None = None
+    low: float | int | str | None = None
+    high: float | int | str | None = None
+    points: Annotated[int, Field(ge=2, le=1_000_000)] | None = Field(None, description="of a grid")
+    spacing: Literal["even", "logarithmic"] = "even"
+
+
+class SweepFile(Block):
+    """A plan: the model, what is varied and how, what is asked of every design."""
+
+    torsional_sweep: Annotated[int, BeforeValidator(_version)]
+    name: str = Field("", max_length=200)
+    model: str = Field(description="model file, beside the plan")
+    over: list[Parameter] = Field(default_factory=list, description="parameters with their values or ends")
+    designs: Choice = Field(default_factory=lambda: Choice.model_validate({}))
+    run: Analysis
+    chunk: Annotated[int, Field(ge=1, le=100_000)] = CHUNK
+    processes: Annotated[int, Field(ge=0, le=4096)] = Field(0, description="side by side; 0: one a core")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sweep as its file asks for it: the ``work``, designs a ``chunk``, ``processes`` (None: one a processor)."""
+
+    name: str
+    work: Work
+    chunk: int
+    processes: int | None
+
+
+@checked
+def load_plan(path: str | os.PathLike[str]) -> Plan:
+    """The plan of a file; what it names is read from its own folder.
+
+    ModelError, and no other error, says what is wrong: file, key path with line, what was found, what is allowed.  The
+    first value of every parameter is tried on the model, so that a misspelt key path is told before any work.
+    """
+    tree, folder = read_tree(path), Path(path).parent
+    if KEY not in tree.data:
+        remedy = "is this a model file?" if "torsional" in tree.data else f"write '{KEY}: {VERSION}'"
+        raise ModelError(f"the key '{KEY}' is missing", remedy=remedy, file=tree.file)
+    try:
+        file = SweepFile.model_validate(tree.data)
+        model = load_model(folder / file.model)
+        designs = _designs(file, model, folder)
+        run = _asked(file.run, folder)
+    except ValidationError as error:
+        raise translated(error, tree) from None
+    except ModelError as error:
+        if error.file:
+            raise
+        told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
+        raise ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told) from None
+    return Plan(file.name or Path(path).stem, Work(model, designs, run), file.chunk, file.processes or None)
+
+
+def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
+    choice = file.designs
+    if choice.method == "table":
+        if not choice.file:
+            raise ModelError("the key 'file' is missing", where="designs", allowed="a CSV file beside the plan")
+        return table(_columns(folder / choice.file, model))
+    if not file.over:
+        raise ModelError("a sweep needs a parameter to vary", where="over")
+    axes = {}
+    for number, given in enumerate(file.over):
+        if given.parameter in axes:
+            raise ModelError("the parameter is named twice", where=f"over.{number}", found=quoted(given.parameter))
+        axes[given.parameter] = _axis(given, f"over.{number}", model, choice.method)
+    if choice.method == "grid":
+        return grid({path: axis.levels for path, axis in axes.items()})
+    if choice.count is None:
+        raise ModelError("the key 'count' is missing", where="designs", allowed="how many designs")
+    return sampled(choice.method, axes, choice.count, choice.seed)
+
+
+def _axis(given: Parameter, where: str, model: Model, method: str) -> Axis:
+    path = given.parameter
+    if given.values is not None:
+        if given.low is not None or given.high is not None:
+            raise ModelError("a parameter has values or ends, not both", where=where, found=quoted(path))
+        _refuse_unknown(path, given.values, model, f"{where}.values")
+        return Axis(tuple(_in_si(path, value, model) for value in given.values))
+    if given.low is None or given.high is None:
+        allowed = "values: [...], or low and high"
+        raise ModelError("a parameter needs values or ends", where=where, found=quoted(path), allowed=allowed)
+    low, high = (_number(path, getattr(given, end), model, f"{where}.{end}") for end in ("low", "high"))
+    try:
+        axis = Axis(low=low, high=high, log=given.spacing == "logarithmic")
+    except ModelError as error:
+        raise ModelError(error.problem, where=where, found=error.found) from None
+    if method != "grid":
+        return axis
+    if given.points is None:
+        raise ModelError("the key 'points' is missing", where=where, allowed="how many values of a grid")
+    return Axis(tuple(np.asarray(axis.at(np.linspace(0.0, 1.0, given.points))).tolist()))
+
+
+def _refuse_unknown(path: str, values: list[Any], model: Model, where: str) -> None:
+    """A key path that no value fits is refused; values that do not fit are failures of their designs."""
+    if not values:
+        raise ModelError("a parameter has no values", where=where)
+    first: ModelError | None = None
+    for value in values:
+        try:
+            changed(model, {path: value})
+            return
+        except ModelError as error:
+            first = first or error
+    assert first is not None  # there are values
+    raise _refused(first, where)
+
+
+def _refused(error: ModelError, where: str) -> ModelError:
+    """What the model says against a value, at the place in the plan."""
+    told = f"the model refuses it: {error.where}: {error.problem}" if error.where else error.problem
+    return ModelError(told, where=where, found=error.found, allowed=error.allowed, remedy=error.remedy)
+
+
+def _in_si(path: str, value: Any, model: Model) -> Any:
+    """A value with its unit in SI where the key holds a quantity; anything else, and what does not fit, as it is."""
+    if not isinstance(value, str):
+        return value
+    document = copy.deepcopy(dict(model.document))
+    try:
+        put(document, path, value)
+        found = values_at(read_document(document), path)
+    except ModelError:
+        return value
+    return next(iter(found.values())) if len(found) == 1 else value
+
+
+def _number(path: str, value: Any, model: Model, where: str) -> float:
+    """An end of a range in SI, tried on the model."""
+    try:
+        changed(model, {path: value})
+    except ModelError as error:
+        raise _refused(error, where) from None
+    number = _in_si(path, value, model)
+    if isinstance(number, bool) or not isinstance(number, int | float):
+        raise ModelError("the ends of a range are numbers", where=where, found=quoted(value))
+    return float(number)
+
+
+def _columns(path: Path, model: Model) -> dict[str, list[float]]:
+    """A table of designs: a key path a column, with its unit in brackets, a design a row."""
+    try:
+        held = cells(read_text(path, TABLE_BYTES))
+        heads = [named(cell) for cell in held.header]
+        values = numbers(held, [name for name, _ in heads])
+    except ModelError as error:
+        raise error.located(file=error.file or path.name) from None
+    return {
+        name: (column * (_number(name, f"1 {unit}", model, name) if unit else 1.0)).tolist()
+        for (name, unit), column in zip(heads, values, strict=True)
+    }
+
+
+def _asked(run: Any, folder: Path) -> Run:
+    """The analysis, with the scenario it names read and its claims known."""
+    if isinstance(run, TransientRun):
+        source = run.scenario if run.scenario in KINDS else str(folder / run.scenario)
+        return run.with_scenario(load_scenario(source))
+    if isinstance(run, ClaimsRun):
+        run.refuse_unknown()
+    return run  # type: ignore[no-any-return]
