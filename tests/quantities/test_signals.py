@@ -26,6 +26,11 @@ def test_acceleration_is_the_second_derivative() -> None:
     assert q.acceleration(ANGLE).attrs["units"] == "rad/s²"
 
 
+def test_the_swing_of_no_signals_is_none() -> None:
+    none = xr.DataArray(np.zeros((0, 2), complex), dims=("point", "order"), coords={"order": [1.5, 3.0]})
+    assert q.swing(none).shape == (0,)
+
+
 def test_swing_is_below_the_bound_and_exact_for_one_order() -> None:
     assert float(q.swing(ANGLE)[0]) < float(q.order_sum(ANGLE)[0]) == pytest.approx(3e-3)
     assert float(q.swing(ANGLE.sel(order=[3.0]))[0]) == pytest.approx(1e-3, rel=1e-4)

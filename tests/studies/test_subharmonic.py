@@ -157,6 +157,13 @@ def test_b2_on_a_truck_whose_line_takes_part(trucks: Trucks) -> None:
     assert f"R² {shaft:.3f}" in found.finding.proviso
 
 
+def test_b1_where_more_harmonics_take_the_motion_away(trucks: Trucks) -> None:
+    """The 24th truck of the hypercube: a refusal in words, not a failure."""
+    samples = Samples(tuple(each.name for each in parameters_of(trucks)), MANY)
+    found = claims()["B1"].tried(varied(trucks, samples.factors(23)))
+    assert found.verdict == "not answered" and "not there with more harmonics" in found.finding.reason
+
+
 def test_no_step_doubles_the_period_where_damping_is_high(trucks: Trucks) -> None:
     damped = replaced(trucks.two_stage, "dmf", damping=60.0)
     with pytest.raises(ModelError, match=r"no motion doubles its period.*none up to a difference of 21\.6 kNm"):

@@ -91,7 +91,7 @@ def swing(orders: xr.DataArray, samples: int = SAMPLES) -> xr.DataArray:
     values = orders.transpose(*rest, "order")
     phase = np.outer(values.order.values, np.arange(samples * cycles(orders)) * (4 * np.pi / samples))
     flat = values.values.reshape(-1, values.sizes["order"])
-    parts = [np.ptp(_synthesized(flat[i : i + 1024], phase), axis=1) for i in range(0, len(flat), 1024)]
+    parts = [np.ptp(_synthesized(flat[i : i + 1024], phase), axis=1) for i in range(0, max(len(flat), 1), 1024)]
     half = 0.5 * np.concatenate(parts).reshape([values.sizes[dim] for dim in rest])
     coords = {name: c for name, c in orders.coords.items() if "order" not in c.dims}
     attrs = {**orders.attrs, "amplitude": "half peak-to-peak over the cycle"}

@@ -62,6 +62,8 @@ def row(model: Model, torque: float) -> tuple[Array, Array]:
     except ModelError:
         return table[0], table[1]
     found = found.isel(point=found.stable.values)
+    if not found.point.size:
+        return table[0], table[1]
     spring, stop = model.landmarks.springs[0], max(hinged(model, model.landmarks.springs[0]).stops)
     loud = swing(acceleration(found.angle.sel(node=model.landmarks.input))).values
     reach = largest(found.twist.sel(element=spring)) / stop

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.powertrain import Powertrain
@@ -125,8 +126,11 @@ def confirmed(search: Search, peak: Peak) -> dict[str, float]:
     """DMF twist of half the firing order [rad] at a peak: by harmonic balance, in time from rest and by time steps."""
     model = search.model
     explorer = over_torque(model, peak.speed, search.torques)
-    branch = doubled(explorer)[0]
-    z = max(at_value(branch, peak.torque), key=lambda point: abs(branch.problem.harmonics_of(point)[0, 1]))
+    found = [(branch, z) for branch in doubled(explorer) for z in at_value(branch, peak.torque)]
+    if not found:
+        where, at = "harmonic balance", f"none at {peak.torque:.0f} Nm and {peak.speed / RPM:.0f} rpm"
+        raise ModelError("the strongest motion is not there with more harmonics", where=where, found=at)
+    branch, z = max(found, key=lambda one: abs(one[0].problem.harmonics_of(one[1])[0, 1]))
     timed = in_time(explorer, peak.torque)
     rest = rest_of(explorer.branches[0].problem, at_value(explorer.branches[0], peak.torque)[0], timed)
     stepped_line = Stepped.of(model, peak.speed, peak.torque)
