@@ -74,8 +74,9 @@ def turning_picture(asked: Asked) -> Sequence[Picture]:
         return []
     marks = {id: [(turn.parameter, turn.factor) for turn in turns] for id, turns in turning.items()}
     figure: Figure = plot_turning(marks)
+    unasked = [id for id, known in asked.robustness.items() if not known.alone]
     caption = (
         "Parameters that turn a verdict when they alone are 20 % lower (−) or higher (+) than the truck's. Claims and "
-        "parameters that are not named stand firm."
-    )
+        "parameters that are not named stand firm"
+    ) + (f"; not asked so: {', '.join(unasked)}." if unasked else ".")
     return [picture(figure, caption, "A table of claims against parameters, marked where the verdict turns.")]
