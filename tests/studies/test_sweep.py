@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -154,31 +152,6 @@ def test_a_folder_of_another_sweep_is_refused(tmp_path: Path) -> None:
         sweep(TRUCK, {"clutch.stiffness": [3e4]}, counted, folder=tmp_path / "plan.json" / "x")
     with pytest.raises(ModelError, match="a chunk has at least one design; found 0"):
         sweep(TRUCK, {"clutch.stiffness": [2e4]}, counted, chunk=0)
+    with pytest.raises(ModelError, match=r"cannot be given this function; found .*; define it by def"):
+        sweep(TRUCK, {"clutch.stiffness": [2e4]}, lambda model: {"n": 1}, processes=2)
     assert len(grid(LEVELS)) == 6
-
-
-ENDED = """
-import sys
-from tests.studies.test_sweep import ENDS, TRUCK, answered
-from torsional.studies.sweeps import sampled, sweep
-
-if __name__ == "__main__":
-    designs = sampled("sobol", ENDS, 64, seed=5)
-    sweep(TRUCK, designs, answered, folder=sys.argv[1], chunk=4, processes=2)
-"""
-
-
-@pytest.mark.full
-@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
-def test_a_driver_killed_at_any_moment(tmp_path: Path) -> None:
-    """Twelve kills of the driver at different moments, then the rest: the bits of an undisturbed run."""
-    whole = sweep(TRUCK, sampled("sobol", ENDS, 64, seed=5), answered, chunk=4)
-    kept = 0
-    for kill in range(12):
-        driver = subprocess.Popen([sys.executable, "-c", ENDED, str(tmp_path)], cwd=ROOT, stderr=subprocess.DEVNULL)
-        time.sleep(2.5 + 0.11 * kill)
-        driver.kill()
-        driver.wait()
-        kept = max(kept, len(list(tmp_path.glob("chunks/*.chunk"))))
-    assert kept > 0
-    assert same(whole, sweep(TRUCK, sampled("sobol", ENDS, 64, seed=5), answered, folder=tmp_path, chunk=4))

@@ -7,6 +7,7 @@ import hashlib
 import inspect
 import json
 import os
+import pickle
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -26,6 +27,7 @@ from torsional.studies.crew import NOWHERE, Crew, Lost
 from torsional.studies.sweeps.designs import Designs, grid
 from torsional.studies.sweeps.store import Store, digest, written
 from torsional.studies.sweeps.work import CRASHES, STATUS, Build, Run, Work
+from torsional.units import quoted
 
 CHUNK = 100
 """Designs of a chunk unless told."""
@@ -51,8 +53,8 @@ def sweep(
     that was worked out is kept there in pieces of ``chunk`` designs, and the same call goes on where it was ended.
     The figures are the same whatever the number of ``processes`` (None: one a processor) and the size of a chunk.
 
-    Raises ModelError for designs that cannot be, a folder that holds another sweep or cannot be written, and where no
-    process can work.
+    Raises ModelError for designs that cannot be, a folder that holds another sweep or cannot be written, functions that
+    several processes cannot be given, and where no process can work.
 
     >>> from torsional.files.load import load_model
     >>> truck = load_model("examples/truck_dmf.yaml")
@@ -63,6 +65,8 @@ def sweep(
     designs = over if isinstance(over, Designs) else grid(over)
     if chunk < 1:
         raise ModelError("a chunk has at least one design", where="chunk", found=str(chunk))
+    if processes != 1:
+        _refuse_unsendable(build, run)
     with contextlib.ExitStack() as stack:
         at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
         pieces = Pieces.of(Work(build, designs, run), at, chunk)
@@ -155,6 +159,18 @@ class Pieces:
         counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
         found = found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
         return _on_axes(found, self.work.designs)
+
+
+def _refuse_unsendable(*functions: object) -> None:
+    for each in functions:
+        try:
+            pickle.dumps(each)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            remedy = "define it by def at the top of a module, or ask with processes=1"
+            problem = "several processes cannot be given this function"
+            raise ModelError(
+                problem, where="sweep", found=getattr(each, "__name__", quoted(each)), remedy=remedy
+            ) from None
 
 
 @contextlib.contextmanager
