@@ -124,13 +124,18 @@ def test_kinds_and_levels_are_kept() -> None:
     assert found["clutch.stiffness"].values.tolist() == ['"20 kNm/rad"', "25000.0"]
 
 
-def test_answers_of_another_shape_are_failures() -> None:
-    def uneven(model: Model) -> dict[str, Any]:
-        count = 2 if model.components["secondary"].inertia < 1 else 3  # type: ignore[attr-defined]
-        return {"values": ("place", np.zeros(count))}
+@pytest.mark.parametrize("chunk", [1, 2, 3, 4])
+def test_answers_of_another_shape_than_the_first_are_failures(chunk: int) -> None:
+    """However the work is cut."""
 
-    found = sweep(TRUCK, {"absorber.secondary_inertia": [0.8, 1.2]}, uneven)
-    assert found.status.values.tolist() == [0, 2] and "other names, sizes or kinds" in str(found.reason.values[1])
+    def uneven(model: Model) -> dict[str, Any]:
+        inertia = model.components["secondary"].inertia  # type: ignore[attr-defined]
+        return {"values": ("place", np.full(2 if inertia < 1 else 3, inertia))}
+
+    found = sweep(TRUCK, {"absorber.secondary_inertia": [0.8, 1.2, 1.3, 0.9]}, uneven, chunk=chunk)
+    assert found.status.values.tolist() == [0, 2, 2, 0]
+    assert found["values"].values[[0, 3]].tolist() == [[0.8, 0.8], [0.9, 0.9]]
+    assert np.isnan(found["values"].values[1:3]).all() and "other names, sizes or kinds" in str(found.reason.values[1])
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")

@@ -26,7 +26,7 @@ from torsional.results import SCHEMA
 from torsional.studies.crew import NOWHERE, Crew, Lost
 from torsional.studies.sweeps.designs import Designs, grid
 from torsional.studies.sweeps.store import Store, digest, written
-from torsional.studies.sweeps.work import CRASHES, STATUS, Build, Run, Work
+from torsional.studies.sweeps.work import CRASHES, FAILED, STATUS, UNEVEN, Build, Run, Work
 from torsional.units import quoted
 
 CHUNK = 100
@@ -142,23 +142,36 @@ class Pieces:
         return Counter({int(design): int(times) for design, times in told.items()})
 
     def collected(self) -> xr.Dataset:
-        """All chunks as one Dataset."""
-        chunks = [self.store.get(number) for number in range(self.count)]
-        status = np.concatenate([each["status"] for each in chunks if each is not None])
-        told = [json.loads(each["told"].tobytes()) for each in chunks if each is not None]
+        """All chunks as one Dataset; answers of another shape than the first are failures."""
+        held = [(n * self.size, chunk) for n in range(self.count) if (chunk := self.store.get(n)) is not None]
+        told = [json.loads(chunk["told"].tobytes()) for _, chunk in held]
+        status = np.concatenate([chunk["status"] for _, chunk in held])
         reasons = {int(number): reason for each in told for number, reason in each["reasons"].items()}
-        shape: Any = next((each["shape"] for each in told if each["shape"]), {"variables": {}, "coordinates": {}})
-        data = {
-            name: (("design", *dims), _joined(chunks, f"answer.{name}", status.size, size, kind), attrs)
-            for name, (dims, size, kind, attrs) in shape["variables"].items()
-        }
-        labels = {name: (dims, values, attrs) for name, (dims, values, attrs) in shape["coordinates"].items()}
-        texts = np.array([reasons.get(number, "") for number in range(status.size)])
-        found = xr.Dataset({**data, "status": ("design", status), "reason": ("design", texts)}, labels)
-        found.status.attrs |= {"flag_values": list(range(len(STATUS))), "flag_meanings": "; ".join(STATUS)}
-        counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
-        found = found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
-        return _on_axes(found, self.work.designs)
+        first: Any = next((each["shapes"][0] for each in told if each["shapes"]), {"variables": {}, "coordinates": {}})
+        values = {name: _none((status.size, *size), kind) for name, (_, size, kind, _) in first["variables"].items()}
+        for (start, chunk), words in zip(held, told, strict=True):
+            for number, shape in enumerate(words["shapes"]):
+                designs = start + np.flatnonzero(chunk["kind"] == number)
+                if shape == first:
+                    for name, into in values.items():
+                        into[designs] = chunk[f"answer.{number}.{name}"]
+                else:
+                    status[designs] = FAILED
+                    reasons |= dict.fromkeys(designs.tolist(), UNEVEN)
+        return _on_axes(_dataset(first, values, status, reasons), self.work.designs)
+
+
+def _dataset(
+    shape: Mapping[str, Any], values: Mapping[str, np.ndarray], status: np.ndarray, reasons: Mapping[int, str]
+) -> xr.Dataset:
+    """Answers of one shape along the designs, with what became of each."""
+    data = {name: (("design", *dims), values[name], attrs) for name, (dims, _, _, attrs) in shape["variables"].items()}
+    labels = {name: (dims, marks, attrs) for name, (dims, marks, attrs) in shape["coordinates"].items()}
+    texts = np.array([reasons.get(number, "") for number in range(status.size)])
+    found = xr.Dataset({**data, "status": ("design", status), "reason": ("design", texts)}, labels)
+    found.status.attrs |= {"flag_values": list(range(len(STATUS))), "flag_meanings": "; ".join(STATUS)}
+    counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
+    return found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
 
 
 def _refuse_unsendable(*functions: object) -> None:
@@ -184,19 +197,10 @@ def _writing(folder: str | os.PathLike[str]) -> Iterator[None]:
         raise ModelError("the folder cannot be written", where=str(folder), found=found, remedy=remedy) from None
 
 
-def _joined(
-    chunks: Sequence[Mapping[str, np.ndarray] | None], name: str, count: int, size: Sequence[int], kind: str
-) -> np.ndarray:
-    """The answers by one name; where a chunk has none of them, as none of its designs was answered, no numbers."""
+def _none(size: Sequence[int], kind: str) -> np.ndarray:
+    """No answers yet: no numbers, or zeros of whole ones."""
     dtype = np.dtype(kind)
-    found, at = np.full((count, *size), np.nan if dtype.kind in "fc" else np.zeros((), dtype)[()], dtype), 0
-    for each in chunks:
-        assert each is not None  # collected when none is missing
-        length = each["status"].size
-        if name in each:
-            found[at : at + length] = each[name]
-        at += length
-    return found
+    return np.full(size, np.nan if dtype.kind in "fc" else np.zeros((), dtype)[()], dtype)
 
 
 def _on_axes(data: xr.Dataset, designs: Designs) -> xr.Dataset:

@@ -23,6 +23,7 @@ STATUS = ("ok", "refused: the model or the analysis cannot be", "failed: an erro
 """What became of a design, by its status."""
 CRASHES = 3
 """How often a design may end a process before it is set aside."""
+UNEVEN = "its answer has other names, sizes or kinds than the first one"
 Answer: TypeAlias = xr.Dataset | Mapping[str, Any]
 Run: TypeAlias = Callable[[Model], Answer]
 Build: TypeAlias = Model | Callable[..., Model]
@@ -41,33 +42,34 @@ class Work:
     run: Run
 
     def stretch(self, start: int, stop: int, aside: Collection[int] = ()) -> dict[str, np.ndarray]:
-        """The chunk of designs ``start`` to ``stop`` − 1: answers (design, …), status, and reasons by number, as text;
-        designs ``aside`` are not tried.
+        """The chunk of designs ``start`` to ``stop`` − 1; designs ``aside`` are not tried.
 
-        What is not answered is not a number, or zero where answers are whole numbers.
+        ``status`` (design,); ``told``: reasons by number and the shapes of answers, as text; ``kind`` (design,): which
+        of the shapes an answer has, -1 for none; ``answer.K.NAME``: the answers of kind K, one after the other.
         """
-        answers: list[xr.Dataset | None] = []
-        status = np.zeros(stop - start, np.int8)
+        count = stop - start
+        status, kind = np.zeros(count, np.int8), np.full(count, -1, np.int32)
         reasons: dict[int, str] = {}
-        shape: dict[str, Any] | None = None
+        shapes: list[dict[str, Any]] = []
+        answers: list[list[xr.Dataset]] = []
         with WATCH.silent():
-            for number, values in enumerate(self.designs.rows(start, stop), start):
-                told, reason, answer = (
-                    (CRASHED, f"ended {CRASHES} processes", None) if number in aside else self._tried(number, values)
-                )
+            for place, values in enumerate(self.designs.rows(start, stop)):
+                status[place], reason, answer = self._tried(start + place, values, aside)
+                reasons |= {start + place: reason} if reason else {}
                 if answer is not None:
-                    shape = shape or shape_of(answer)
-                    if shape_of(answer) != shape:
-                        told, answer = FAILED, None
-                        reason = "its answer has other names, sizes or kinds than those before it"
-                status[number - start] = told
-                answers.append(answer)
-                reasons |= {number: reason} if reason else {}
-        told_of = {"shape": shape, "reasons": reasons}
-        text = json.dumps(told_of, sort_keys=True, ensure_ascii=False).encode()
-        return {"status": status, "told": np.frombuffer(text, np.uint8), **_stacked(answers, shape)}
+                    kind[place] = _place_of(shape_of(answer), shapes, answers)
+                    answers[kind[place]].append(answer)
+        text = json.dumps({"shapes": shapes, "reasons": reasons}, sort_keys=True, ensure_ascii=False).encode()
+        stacked = {
+            f"answer.{number}.{name}": np.stack([answer[name].values for answer in alike])
+            for number, alike in enumerate(answers)
+            for name in alike[0].data_vars
+        }
+        return {"status": status, "kind": kind, "told": np.frombuffer(text, np.uint8), **stacked}
 
-    def _tried(self, number: int, values: Values) -> tuple[int, str, xr.Dataset | None]:
+    def _tried(self, number: int, values: Values, aside: Collection[int]) -> tuple[int, str, xr.Dataset | None]:
+        if number in aside:
+            return CRASHED, f"ended {CRASHES} processes", None
         marked(number)
         try:
             model = changed(self.build, dict(values)) if isinstance(self.build, Model) else self.build(**values)
@@ -100,14 +102,9 @@ def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in attrs.items()}
 
 
-def _stacked(answers: list[xr.Dataset | None], shape: Mapping[str, Any] | None) -> dict[str, np.ndarray]:
-    found = {}
-    for name, (_, size, kind, _) in (shape or {"variables": {}})["variables"].items():
-        dtype = np.dtype(kind)
-        empty = np.nan if dtype.kind in "fc" else np.zeros((), dtype)[()]
-        stack = np.full((len(answers), *size), empty, dtype)
-        for place, answer in enumerate(answers):
-            if answer is not None:
-                stack[place] = answer[name].values
-        found[f"answer.{name}"] = stack
-    return found
+def _place_of(shape: dict[str, Any], shapes: list[dict[str, Any]], answers: list[list[xr.Dataset]]) -> int:
+    """Which of the shapes that were met this is; a new one is added."""
+    if shape not in shapes:
+        shapes.append(shape)
+        answers.append([])
+    return shapes.index(shape)
