@@ -40,17 +40,22 @@ def threads(_: int) -> str:
     return os.environ["OPENBLAS_NUM_THREADS"]
 
 
-INTERRUPTED = """
-import time
-from tests.studies.test_crew import ready
+def dozing(path: str) -> None:
+    """Says that it has begun, and works for long."""
+    Path(path).touch()
+    time.sleep(4.0 if path.endswith("short") else 60.0)
+
+
+SCRIPT = """
+import sys
+from tests.studies.test_crew import dozing, ready
 from torsional.studies.crew import Crew
 
 if __name__ == "__main__":
-    with Crew(time.sleep, ready, (), 2) as crew:
-        for _ in crew.results([60, 60, 60]):
+    with Crew(dozing, ready, (), 2) as crew:
+        for _ in crew.results(sys.argv[1:]):
             pass
 """
-ORPHANED = INTERRUPTED.replace("[60, 60, 60]", "[5.0, 5.0]")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
@@ -64,7 +69,7 @@ def test_a_process_that_dies_costs_its_task_alone() -> None:
 
 
 def test_what_a_task_raises_is_raised_here() -> None:
-    with pytest.raises(ModelError, match="no such number; found 4"), Crew(refused, ready, (), 2) as crew:
+    with pytest.raises(ModelError, match=r"no such number; found [45]"), Crew(refused, ready, (), 2) as crew:
         list(crew.results([4, 5]))
     assert not multiprocessing.active_children()
 
@@ -88,29 +93,32 @@ def test_each_has_one_thread_and_the_environment_stays(monkeypatch: pytest.Monke
     assert os.environ["OPENBLAS_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 
-def begun(script: str) -> subprocess.Popen[str]:
-    """A script with two processes at work."""
-    return subprocess.Popen(
-        [sys.executable, "-c", script], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
+def begun(*paths: Path) -> subprocess.Popen[str]:
+    """A script with two processes that are at work."""
+    script = subprocess.Popen(
+        [sys.executable, "-c", SCRIPT, *map(str, paths)],
+        cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    latest = time.monotonic() + 60
+    while not all(path.exists() for path in paths) and time.monotonic() < latest:
+        time.sleep(0.02)
+    return script
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are sent signals otherwise there")
-def test_ctrl_c_ends_all_at_once_and_without_tracebacks_of_theirs() -> None:
-    script = begun(INTERRUPTED)
-    time.sleep(6.0)
-    since = time.monotonic()
+def test_ctrl_c_ends_all_at_once_and_without_tracebacks_of_theirs(tmp_path: Path) -> None:
+    script = begun(tmp_path / "one", tmp_path / "two")
     os.killpg(script.pid, signal.SIGINT)
-    _, told = script.communicate(timeout=20)
-    assert time.monotonic() - since < 3.0
-    assert told.count("Traceback") == 1 and told.rstrip().endswith("KeyboardInterrupt")
+    since = time.monotonic()
+    _, told = script.communicate(timeout=50)
+    assert time.monotonic() - since < 20 and told.count("Traceback") == 1
+    assert told.rstrip().endswith("KeyboardInterrupt")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are told apart otherwise there")
-def test_who_loses_the_one_that_asked_ends_by_itself_and_quietly() -> None:
-    script = begun(ORPHANED)
-    time.sleep(5.0)
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
+def test_who_loses_the_one_that_asked_ends_by_itself_and_quietly(tmp_path: Path) -> None:
+    script = begun(tmp_path / "one short", tmp_path / "two short")
     since = time.monotonic()
     script.kill()
-    _, told = script.communicate(timeout=20)  # ends when they have: they hold the stream too
+    _, told = script.communicate(timeout=50)  # ends when they have: they hold the stream too
     assert time.monotonic() - since > 0.3 and "Traceback" not in told
