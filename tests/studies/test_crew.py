@@ -68,6 +68,16 @@ def test_a_process_that_dies_costs_its_task_alone() -> None:
     assert not multiprocessing.active_children()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
+def test_a_process_that_dies_with_nothing_to_do_is_replaced() -> None:
+    with Crew(ended, ready, (), 2) as crew:
+        assert len(dict(crew.results([0, 1]))) == 2
+        for child in multiprocessing.active_children():
+            child.kill()
+            child.join()
+        assert dict(crew.results([4, 5])) == {4: 4, 5: 5}
+
+
 def test_what_a_task_raises_is_raised_here() -> None:
     with pytest.raises(ModelError, match=r"no such number; found [45]"), Crew(refused, ready, (), 2) as crew:
         list(crew.results([4, 5]))

@@ -138,6 +138,31 @@ def test_answers_of_another_shape_than_the_first_are_failures(chunk: int) -> Non
     assert np.isnan(found["values"].values[1:3]).all() and "other names, sizes or kinds" in str(found.reason.values[1])
 
 
+def test_what_a_function_takes_from_around_it_belongs_to_the_sweep(tmp_path: Path) -> None:
+    """The same text with another captured array is another sweep, not an old answer."""
+
+    def asking(speeds: np.ndarray) -> Any:
+        return lambda model: {"worst": at_input(model, speeds).max()}
+
+    over = {"clutch.stiffness": [2e4]}
+    first = sweep(TRUCK, over, asking(SPEEDS), folder=tmp_path)
+    assert same(first, sweep(TRUCK, over, asking(SPEEDS.copy()), folder=tmp_path))
+    with pytest.raises(ModelError, match="holds the sweep of another plan"):
+        sweep(TRUCK, over, asking(SPEEDS[:2]), folder=tmp_path)
+
+
+def test_values_and_labels_that_are_no_numbers() -> None:
+    """A value that is none is a failure of its design; labels that are none and arrays in attrs are as good."""
+
+    def labelled(model: Model) -> xr.Dataset:
+        data = xr.Dataset({"size": ("place", np.ones(2))}, {"place": [1.0, np.nan]})
+        data["size"].attrs["limits"] = np.zeros(2)
+        return data
+
+    found = sweep(TRUCK, {"clutch.stiffness": [2e4, float("nan"), 3e4]}, labelled, chunk=1)
+    assert found.status.values.tolist() == [0, 1, 0] and found["size"].values[2].tolist() == [1.0, 1.0]
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
 def test_a_design_that_ends_processes_is_set_aside(tmp_path: Path) -> None:
     """After three; all others are answered."""

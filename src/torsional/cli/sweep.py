@@ -81,9 +81,8 @@ def _worked(pieces: Pieces, asked: Plan, processes: int, silent: bool) -> None:
 
 
 def _deliver(found: xr.Dataset, asked: Plan, folder: Path, outputs: Sequence[Path], as_json: bool, quiet: bool) -> None:
-    state = found.status.values.ravel()
     head = {"torsional": __version__, "command": "sweep", "plan": asked.name, "folder": str(folder)}
-    counts = {word.partition(":")[0]: int((state == n).sum()) for n, word in enumerate(STATUS)}
+    counts = {word: found.attrs[f"designs {word}"] for word in (each.partition(":")[0] for each in STATUS)}
     wanted = as_json or any(path.suffix.lower() == ".json" for path in outputs)
     text = json_text({**head, "designs": counts, "result": described(found)}) if wanted else ""
     written({path: _writer(found, path, text) for path in outputs})

@@ -51,8 +51,10 @@ class _Member(Generic[Task]):
         self.busy = False
 
     def give(self, task: Task) -> None:
-        self.task, self.busy, self.mark.value = task, True, NOWHERE
+        """Raises OSError where the process has died."""
+        self.task, self.mark.value = task, NOWHERE
         self.pipe.send(task)
+        self.busy = True
 
 
 class Crew(Generic[Task, Result]):
@@ -95,16 +97,23 @@ class Crew(Generic[Task, Result]):
 
     def _busied(self, waiting: Iterator[Task]) -> None:
         """Give every idle process a task, and start processes while tasks are left."""
-        idle = [member for member in self._members if not member.busy]
-        while idle or len(self._members) < self.count:
+        while len([member for member in self._members if member.busy]) < self.count:
             try:
                 task = next(waiting)
             except StopIteration:
                 return
-            if not idle:
-                self._members.append(_Member(self._work, self._prepare, self._given))
-                idle.append(self._members[-1])
-            idle.pop().give(task)
+            self._given_to_somebody(task)
+
+    def _given_to_somebody(self, task: Task) -> None:
+        """A process that has died while it had nothing to do takes no task, and its place is free."""
+        for member in [member for member in self._members if not member.busy]:
+            try:
+                member.give(task)
+                return
+            except OSError:
+                self._members.remove(member)
+        self._members.append(_Member(self._work, self._prepare, self._given))
+        self._members[-1].give(task)
 
     def _received(self, member: _Member[Task]) -> tuple[Task, Result | Lost]:
         task: Any = member.task

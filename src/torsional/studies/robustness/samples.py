@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.stats import qmc
 
 from torsional.numerics.arrays import Array
 from torsional.studies.robustness.parameters import SPREAD
+from torsional.studies.sweeps.designs import hypercube
 
 SEED = 20
 """Of the Latin hypercube, so that every run asks the same trucks."""
@@ -33,7 +33,7 @@ class Samples:
         """Factors of the hypercube's trucks (truck, parameter) within 1 ± 0.2."""
         if not self.many or not self.parameters:
             return np.ones((self.many, len(self.parameters)))
-        drawn = qmc.LatinHypercube(len(self.parameters), seed=self.seed).random(self.many)
+        drawn = hypercube(self.many, len(self.parameters), self.seed)
         return np.asarray(1.0 + SPREAD * (2.0 * drawn - 1.0))
 
     def __len__(self) -> int:

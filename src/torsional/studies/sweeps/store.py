@@ -37,8 +37,12 @@ def digest(value: Any) -> str:
     >>> digest({"a": 1.0, "b": [2]}) == digest({"b": [2], "a": 1.0})
     True
     """
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(json_of(value).encode()).hexdigest()
+
+
+def json_of(value: Any) -> str:
+    """A plain value as one text, keys in order; what is no plain value (an array in an attribute) by its words."""
+    return json.dumps(value, sort_keys=True, ensure_ascii=False, default=repr)
 
 
 def packed(arrays: Mapping[str, np.ndarray]) -> bytes:
@@ -97,7 +101,7 @@ class Store:
             raise ModelError("the folder holds the sweep of another plan", where=str(folder), remedy=remedy)
         store.chunks.mkdir(parents=True, exist_ok=True)
         if known is None:
-            written(store.folder / PLAN, json.dumps(plan, indent=1, ensure_ascii=False, allow_nan=False).encode())
+            written(store.folder / PLAN, json_of(plan).encode())
         return store
 
     @property

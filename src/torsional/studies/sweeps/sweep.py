@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import hashlib
-import inspect
 import json
 import os
 import pickle
@@ -12,8 +10,6 @@ import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,11 +17,11 @@ import xarray as xr
 
 from torsional import __version__
 from torsional.errors import ModelError
-from torsional.model import Model
 from torsional.results import SCHEMA
 from torsional.studies.crew import NOWHERE, Crew, Lost
 from torsional.studies.sweeps.designs import Designs, grid
-from torsional.studies.sweeps.store import Store, digest, written
+from torsional.studies.sweeps.identity import code, plan_of
+from torsional.studies.sweeps.store import Store, written
 from torsional.studies.sweeps.work import CRASHES, FAILED, STATUS, UNEVEN, Build, Run, Work
 from torsional.units import quoted
 
@@ -86,7 +82,7 @@ class Pieces:
     def of(cls, work: Work, folder: str | os.PathLike[str], size: int) -> Pieces:
         """The pieces of some work in a folder, which is made; raises ModelError where it cannot be."""
         with _writing(folder):
-            return cls(Store.begun(folder, _plan(work), f"{code()} by {size}"), work, size)
+            return cls(Store.begun(folder, plan_of(work), f"{code()} by {size}"), work, size)
 
     @property
     def count(self) -> int:
@@ -147,8 +143,9 @@ class Pieces:
         told = [json.loads(chunk["told"].tobytes()) for _, chunk in held]
         status = np.concatenate([chunk["status"] for _, chunk in held])
         reasons = {int(number): reason for each in told for number, reason in each["reasons"].items()}
-        first: Any = next((each["shapes"][0] for each in told if each["shapes"]), {"variables": {}, "coordinates": {}})
-        values = {name: _none((status.size, *size), kind) for name, (_, size, kind, _) in first["variables"].items()}
+        first = next((each["shapes"][0] for each in told if each["shapes"]), '{"variables": {}, "coordinates": {}}')
+        shaped = json.loads(first)
+        values = {name: _none((status.size, *size), kind) for name, (_, size, kind, _) in shaped["variables"].items()}
         for (start, chunk), words in zip(held, told, strict=True):
             for number, shape in enumerate(words["shapes"]):
                 designs = start + np.flatnonzero(chunk["kind"] == number)
@@ -158,7 +155,7 @@ class Pieces:
                 else:
                     status[designs] = FAILED
                     reasons |= dict.fromkeys(designs.tolist(), UNEVEN)
-        return _on_axes(_dataset(first, values, status, reasons), self.work.designs)
+        return _on_axes(_dataset(shaped, values, status, reasons), self.work.designs)
 
 
 def _dataset(
@@ -223,43 +220,6 @@ def _labels(values: Any) -> np.ndarray:
     plain = all(isinstance(value, int | float | str | bool) for value in listed)
     same = len({isinstance(value, str) for value in listed}) == 1
     return np.array(listed if plain and same else [json.dumps(value) for value in listed])
-
-
-def _plan(work: Work) -> dict[str, Any]:
-    """What the sweep is, as plain values: the same for the same sweep."""
-    build = work.build.hash if isinstance(work.build, Model) else _source(work.build)
-    axes = {
-        name: list(axis.levels) or {"low": axis.low, "high": axis.high, "log": axis.log}
-        for name, axis in work.designs.axes.items()
-    }
-    designs = {"method": work.designs.method, "count": len(work.designs), "seed": work.designs.seed, "axes": axes}
-    return {"torsional_sweep": 1, "build": build, "designs": designs, "run": _source(work.run)}
-
-
-def _source(function: Any) -> str:
-    """A function by its name and its text, as far as it has one; an analysis of a plan by its settings."""
-    if hasattr(function, "settings"):
-        return digest([type(function).__name__, function.settings])
-    if isinstance(function, partial):
-        given = [repr(each) for each in (*function.args, *sorted(function.keywords.items()))]
-        return digest([_source(function.func), given])
-    name = f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', repr(type(function)))}"
-    with contextlib.suppress(OSError, TypeError):
-        return f"{name} {digest(inspect.getsource(function))[:16]}"
-    return name
-
-
-@cache
-def code() -> str:
-    """The version of this package and a hash of all its sources: other code may answer otherwise."""
-    told = hashlib.sha256(__version__.encode())
-    for source in _sources():
-        told.update(source.read_bytes())
-    return told.hexdigest()
-
-
-def _sources() -> Iterator[Path]:
-    yield from sorted(Path(__file__).parents[2].rglob("*.py"))
 
 
 _HERE: dict[str, Pieces] = {}

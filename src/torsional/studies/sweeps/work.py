@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -16,6 +15,7 @@ from torsional.model import Model
 from torsional.numerics.compiling import WATCH
 from torsional.studies.crew import marked
 from torsional.studies.sweeps.designs import Designs, Values
+from torsional.studies.sweeps.store import json_of
 
 OK, REFUSED, FAILED, CRASHED = range(4)
 STATUS = ("ok", "refused: the model or the analysis cannot be", "failed: an error that nobody expected",
@@ -50,16 +50,16 @@ class Work:
         count = stop - start
         status, kind = np.zeros(count, np.int8), np.full(count, -1, np.int32)
         reasons: dict[int, str] = {}
-        shapes: list[dict[str, Any]] = []
+        shapes: list[str] = []
         answers: list[list[xr.Dataset]] = []
         with WATCH.silent():
             for place, values in enumerate(self.designs.rows(start, stop)):
                 status[place], reason, answer = self._tried(start + place, values, aside)
                 reasons |= {start + place: reason} if reason else {}
                 if answer is not None:
-                    kind[place] = _place_of(shape_of(answer), shapes, answers)
+                    kind[place] = _place_of(json_of(shape_of(answer)), shapes, answers)
                     answers[kind[place]].append(answer)
-        text = json.dumps({"shapes": shapes, "reasons": reasons}, sort_keys=True, ensure_ascii=False).encode()
+        text = json_of({"shapes": shapes, "reasons": reasons}).encode()
         stacked = {
             f"answer.{number}.{name}": np.stack([answer[name].values for answer in alike])
             for number, alike in enumerate(answers)
@@ -102,7 +102,7 @@ def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in attrs.items()}
 
 
-def _place_of(shape: dict[str, Any], shapes: list[dict[str, Any]], answers: list[list[xr.Dataset]]) -> int:
+def _place_of(shape: str, shapes: list[str], answers: list[list[xr.Dataset]]) -> int:
     """Which of the shapes that were met this is; a new one is added."""
     if shape not in shapes:
         shapes.append(shape)
