@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -73,15 +74,8 @@ def _one(detail: dict[str, Any], tree: Tree) -> ModelError:
 
 def _sentence(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
     kind, context = str(detail["type"]), detail.get("ctx", {})
-    if kind == "union_tag_not_found":
-        where, allowed = tree.place(path), ", ".join(_tags(path))
-        return ModelError("the key 'type' is missing", where=where, allowed=allowed)
-    if kind == "union_tag_invalid":
-        known = _tags(path)
-        tag = str(context.get("tag", ""))[:64]
-        return ModelError(
-            "there is no such type", where=tree.place(f"{path}.type"), found=quoted(tag), remedy=nearest(tag, known)
-        )
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        return _untold(detail, path, tree)
     found = quoted(detail["input"])
     if kind == "literal_error":
         return ModelError(
@@ -92,6 +86,18 @@ def _sentence(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
         return ModelError(problem, where=tree.place(path), found=found, allowed=f"{sign} {context[key]}")
     problem = _WANTED.get(kind, str(detail["msg"])[:1].lower() + str(detail["msg"])[1:])
     return ModelError(problem, where=tree.place(path), found=found)
+
+
+def _untold(detail: dict[str, Any], path: str, tree: Tree) -> ModelError:
+    """The key that says which of several blocks is meant is missing, or names none of them."""
+    context: dict[str, Any] = detail["ctx"]
+    key = str(context["discriminator"]).strip("'")
+    known = _tags(path) if key == "type" else re.findall("'(.*?)'", str(context.get("expected_tags", "")))
+    if detail["type"] == "union_tag_not_found":
+        return ModelError(f"the key '{key}' is missing", where=tree.place(path), allowed=", ".join(known))
+    tag = str(context["tag"])[:64]
+    told = {"found": quoted(tag), "remedy": nearest(tag, known)}
+    return ModelError(f"there is no such {key}", where=tree.place(f"{path}.{key}"), **told)
 
 
 def _listed(expected: object) -> str:
@@ -111,12 +117,14 @@ def _path(location: Sequence[int | str], data: Any) -> str:
     parts: list[str] = []
     chosen = False
     for step in location:
-        if not chosen and _chooses(parts) and isinstance(data, dict) and data.get("type") == step:
+        key = _chooses(parts)
+        if not chosen and key and isinstance(data, dict) and data.get(key) == step:
             chosen = True
             continue
         if step == "[key]":
             break
         parts.append(str(step))
+        chosen = False
         try:
             data = data[step]
         except (KeyError, IndexError, TypeError):
@@ -124,6 +132,8 @@ def _path(location: Sequence[int | str], data: Any) -> str:
     return ".".join(parts)
 
 
-def _chooses(parts: Sequence[str]) -> bool:
-    """Whether the block at this path is one of several that its type tells apart."""
-    return parts == ["absorber"] or (len(parts) in (2, 4) and parts[-2] == "components")
+def _chooses(parts: Sequence[str]) -> str:
+    """The key by which the block at this path is one of several; none where it is the only kind."""
+    if parts == ["run"] or (len(parts) == 3 and parts[:2] == ["run", "ask"]):  # of plans
+        return "analysis"
+    return "type" if parts == ["absorber"] or (len(parts) in (2, 4) and parts[-2] == "components") else ""

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from torsional.errors import ModelError
 from torsional.files.load import validated
 from torsional.files.reader import Tree
 from torsional.files.schema import ModelFile
@@ -72,6 +73,25 @@ def values_at(file: ModelFile, path: str) -> dict[str, float]:
     leaves = [(at, value) for at, value in found.items() if value is not None]
     listed = [(f"{at}.{n}", item) for at, value in leaves if isinstance(value, list) for n, item in enumerate(value)]
     return dict([*((at, value) for at, value in leaves if isinstance(value, float)), *listed])
+
+
+def quantity_at(file: ModelFile, path: str) -> str:
+    """The quantity of the single figure at a key path; ModelError where there is none.
+
+    >>> disc = {"type": "inertia", "inertia": "0.2 kgm²"}
+    >>> file = read_document({"torsional": 1, "name": "one disc", "components": {"disc": disc}})
+    >>> quantity_at(file, "components.disc.inertia")
+    'inertia'
+    """
+    *steps, last = path.split(".")
+    holder: Any = file
+    for step in steps:
+        holder = next((item for _, item in _items(holder, step)), None)
+    field = type(holder).model_fields.get(last) if isinstance(holder, BaseModel) else None
+    quantity = quantity_of(field) if field else None
+    if quantity is None or list(values_at(file, path)) != [path]:
+        raise ModelError("the model file gives no figure there", where=path)
+    return quantity.name
 
 
 def _items(holder: Any, step: str) -> list[tuple[str, Any]]:

@@ -140,7 +140,7 @@ class Bench:
     Each point has its own tangents.  The angle at the gearbox input under unit torques on the throws is that of the
     throws under a unit torque at the gearbox input (reciprocity: all matrices are symmetric), so that one solution
     answers for every mean torque that shares its tangents.  ``stops``: ways of the springs to their stops (default:
-    `travels`).
+    `travels`); ``speed``: other speeds [rad/s] than those in steps.
     """
 
     def __init__(
@@ -151,9 +151,10 @@ class Bench:
         orders: Sequence[float] = (),
         stops: Mapping[str, float] | None = None,
         gears: Sequence[str] = (),
+        speed: Array | None = None,
     ) -> None:
         self.model, self.gears = model, tuple(gears or model.gear_names)
-        self.speed = looked_at(model, step)
+        self.speed = looked_at(model, step) if speed is None else speed
         self.torque = np.multiply.outer(np.array(loads), model.full_load(self.speed))
         self.orders = np.array(orders or (main_order(model),), dtype=float)
         self.stops = travels(model) if stops is None else dict(stops)
@@ -164,10 +165,17 @@ class Bench:
     def accelerations(self, factors: Factors | None = None) -> tuple[ComplexArray, Array]:
         """Complex 0-peak orders of the acceleration at the gearbox input, (designs, gears, loads, speeds, orders), and
         the reach of the springs, (designs,)."""
-        found = [line.solved(factors or {}, self._drive) for line in self._lines]
-        angle = np.stack([one[0] for one in found], axis=1)
+        found, twist, _ = self.answers(factors)
+        return found, (twist / np.array(list(self.stops.values()))).max(axis=1, initial=0.0)
+
+    def answers(self, factors: Factors | None = None) -> tuple[ComplexArray, Array, Array]:
+        """The accelerations; the largest twist [rad] of each of ``stops``, mean and vibration together, and the largest
+        mean power [W] that its damper takes, (designs, springs) each."""
+        lines = [(line, line.solved(factors or {}, self._drive)) for line in self._lines]
+        angle = np.stack([found[:, 0] for _, found in lines], axis=1)
         omega = np.multiply.outer(self.speed, self.orders)
-        return -np.square(omega) * angle, np.max([one[1] for one in found], axis=0)
+        twist, loss = zip(*(line.springs(factors or {}, found[:, 1:]) for line, found in lines), strict=True)
+        return -np.square(omega) * angle, np.max(twist, axis=0), np.max(loss, axis=0)
 
     def worst(self) -> Worst:
         """The worst of the model as it is: of one order its amplitude, of several half the swing over a cycle."""
@@ -197,8 +205,8 @@ class _Line:
         self.nodes = list(dict.fromkeys(node for probe in self.probes for node in probe))
         self.throws = self.system.T[[self.system.node_index(node) for node in model.landmarks.throws]]
 
-    def solved(self, factors: Factors, drive: ComplexArray) -> tuple[ComplexArray, Array]:
-        """Angle at the input (designs, loads, speeds, orders), and the reach of the springs (designs,)."""
+    def solved(self, factors: Factors, drive: ComplexArray) -> ComplexArray:
+        """Angle at the input and twists of the springs, (designs, 1 + springs, loads, speeds, orders)."""
         designs = max((np.size(value) for value in factors.values()), default=1)
         shape = (designs, len(self.probes), *self.which.shape, self.bench.orders.size)
         found = np.empty(shape, dtype=complex)
@@ -207,7 +215,7 @@ class _Line:
             values = self._values(factors, designs, stiffness, damping)
             seen = np.einsum("dpsot,lsto->dplso", self._probed(values, designs, at), drive[:, at])
             found[:, :, :, at] = np.where((self.which[:, at] == kind)[..., None], seen, found[:, :, :, at])
-        return found[:, 0], self._reach(factors, np.abs(found[:, 1:]).sum(axis=-1))
+        return found
 
     def _values(self, factors: Factors, designs: int, stiffness: Array, damping: Array) -> dict[str, Array]:
         plain = {"stiffness": stiffness, "damping": damping}
@@ -229,15 +237,19 @@ class _Line:
         q, _ = response(self.system, omega, turning, self.nodes, np.tile(loads, (designs, 1, 1)), each)
         return np.asarray((q @ self.throws.T).reshape(designs, probes, speed.size, orders.size, -1))
 
-    def _reach(self, factors: Factors, swing: Array) -> Array:
-        """Largest twist over the way to the stop; ``swing`` (designs, springs, loads, speeds), the orders' sum."""
-        reach = np.zeros(len(swing))
-        for place, (name, travel) in enumerate(self.bench.stops.items()):
-            mean = self.angle[..., self.system.connections.names.index(name)]
-            factor = np.atleast_1d(factors.get((name, "stiffness"), np.ones(1)))
-            twist = np.abs(mean) / factor[:, None, None] + swing[:, place]
-            reach = np.maximum(reach, twist.max(axis=(1, 2)) / travel)
-        return reach
+    def springs(self, factors: Factors, twist: ComplexArray) -> tuple[Array, Array]:
+        """Largest twist, the mean one included, and largest mean power ½ c |ωφ|² of their dampers, (designs, springs);
+        ``twist`` (designs, springs, loads, speeds, orders)."""
+        largest, power = np.empty((2, *twist.shape[:2]))
+        omega = np.multiply.outer(self.bench.speed, self.bench.orders)
+        for place, name in enumerate(self.bench.stops):
+            at = self.system.connections.names.index(name)
+            stiffer, damper = (np.atleast_1d(factors.get((name, f), np.ones(1))) for f in ("stiffness", "damping"))
+            mean = np.abs(self.angle[..., at]) / stiffer[:, None, None]
+            largest[:, place] = (mean + np.abs(twist[:, place]).sum(axis=-1)).max(axis=(1, 2))
+            lost = (self.tangents[self.which][..., 1, at, None] * np.abs(omega * twist[:, place]) ** 2).sum(axis=-1)
+            power[:, place] = 0.5 * damper * lost.max(axis=(1, 2))
+        return largest, power
 
 
 def looked_at(model: Model, step: float) -> Array:

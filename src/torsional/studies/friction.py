@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from torsional.components import Coupling
-from torsional.errors import ModelError
+from torsional.errors import ModelError, nearest
 from torsional.laws import Jenkins
 from torsional.model import Model
 from torsional.numerics.arrays import Array
@@ -81,26 +81,29 @@ class Curve:
         return float(np.interp(speed, self.speed, values))
 
 
-def curve(model: Model, branch: Branch) -> Curve:
-    """Amplitude and power along a branch."""
+def curve(model: Model, branch: Branch, element: str = WASHER) -> Curve:
+    """Amplitude and power, of the ``element`` that rubs, along a branch."""
     told, system, speed = states(branch.problem, branch.scaled), branch.problem.setting.split.system, branch.values
     place = round(main_order(model) / branch.base_order)
     input_angle = told.angle[:, place, system.node_index(model.landmarks.input)]
-    washer = system.connections.names.index(WASHER)
+    names = system.connections.names
+    if element not in names:
+        raise ModelError("the clutch has no such friction", where=element, remedy=nearest(element, names))
+    washer = names.index(element)
     omega = np.multiply.outer(speed, branch.base_order * np.arange(told.twist.shape[1]))
     rate = 1j * omega * told.twist[:, :, washer]
     power = 0.5 * (told.torque[:, :, washer] * rate.conj()).real.sum(axis=1)
     return Curve(speed, np.abs(input_angle) * (main_order(model) * speed) ** 2, power)
 
 
-def answered(model: Model, speed: tuple[float, float]) -> Curve:
+def answered(model: Model, speed: tuple[float, float], element: str = WASHER) -> Curve:
     """The answer over a range of speed [rad/s], pieced together of all branches by rising speed.
 
     A washer that sticks holds any mean torque, so that branches may end where it comes to stick; the vibration is the
     same on the one that goes on.  Raises ModelError where no branch reaches an end of the range.
     """
     explorer = over_speed(model, speed, mean_torque(model), depth=0, highest_order=ORDERS)
-    parts = [curve(model, branch) for branch in explorer.branches]
+    parts = [curve(model, branch, element) for branch in explorer.branches]
     at = np.concatenate([part.speed for part in parts])
     rise = np.argsort(at)
     if at[rise[0]] > speed[0] * 1.001 or at[rise[-1]] < speed[1] * 0.999:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -30,6 +30,9 @@ POINTS = 57
 
 class Asking(Block):
     """What a plan asks, as plain values: the ``settings`` that tell one sweep from another."""
+
+    gives: ClassVar[tuple[str, ...]] = ()
+    """The figures of its answer, where they are known beforehand."""
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -67,6 +70,7 @@ class Linear(Asking):
 class ModesRun(Asking):
     """Natural frequencies: the lowest ``count`` elastic modes in one gear."""
 
+    gives = ("frequency", "damped_ratio", "order_speed")
     analysis: Literal["modes"]
     gear: GearName = Field("", description="engaged; default: the last listed")
     torque: Torque | None = Field(None, description="mean; default: that of most of the operating range")
@@ -96,6 +100,7 @@ class ModesRun(Asking):
 class ResponseRun(Linear):
     """Order response over speed at full load, or under one mean torque."""
 
+    gives = ("acceleration",)
     analysis: Literal["response"]
     torque: Torque | None = Field(None, description="mean; default: full load")
 
@@ -115,6 +120,7 @@ class ResponseRun(Linear):
 class MapRun(Linear):
     """The map over speed and mean torque of all gears, and the worst of it gear by gear."""
 
+    gives = ("acceleration_swing", "worst_speed", "worst_torque")
     analysis: Literal["map"]
     gears: list[GearName] = Field(default_factory=list, description="default: all of them")
     torques: Whole = Field(13, description="how many mean torques up to full load")
@@ -144,6 +150,7 @@ class MapRun(Linear):
 class TransientRun(Asking):
     """A scenario in time, by the name of its kind or of its file."""
 
+    gives = ("torque_lowest", "torque_highest", "twist_lowest", "twist_highest")
     analysis: Literal["transient"]
     scenario: str = Field(description="name of a kind, or of a file beside the plan")
     _block: Scenario | None = PrivateAttr(None)
@@ -171,6 +178,7 @@ class TransientRun(Asking):
 class ClaimsRun(Asking):
     """Claims of the thesis."""
 
+    gives = ("verdict",)
     analysis: Literal["claims"]
     ids: list[str] = Field(description="of claims, as A6 or B2", min_length=1)
 
@@ -189,9 +197,7 @@ class ClaimsRun(Asking):
         return data
 
 
-Analysis: TypeAlias = Annotated[
-    ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun, Field(discriminator="analysis")
-]
+Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun
 
 
 def _filled(values: Array, count: int) -> Any:

@@ -23,7 +23,8 @@ from torsional.files.scenario import load_scenario
 from torsional.files.scenario_schema import KINDS
 from torsional.files.schema.fields import Block, only_version
 from torsional.model import Model
-from torsional.studies.sweeps.analyses import Analysis, ClaimsRun, TransientRun
+from torsional.studies.sweeps.analyses import ClaimsRun, TransientRun
+from torsional.studies.sweeps.criteria import CriteriaRun, Question
 from torsional.studies.sweeps.designs import Axis, Designs, grid, sampled, table
 from torsional.studies.sweeps.sweep import CHUNK
 from torsional.studies.sweeps.work import Run, Work
@@ -66,7 +67,7 @@ class SweepFile(Block):
     model: str = Field(description="model file, beside the plan")
     over: list[Parameter] = Field(default_factory=list, description="parameters with their values or ends")
     designs: Choice = Field(default_factory=lambda: Choice.model_validate({}))
-    run: Analysis
+    run: Question
     chunk: Annotated[int, Field(ge=1, le=100_000)] = CHUNK
     processes: Annotated[int, Field(ge=0, le=4096)] = Field(0, description="side by side; 0: one a core")
 
@@ -96,7 +97,7 @@ def load_plan(path: str | os.PathLike[str]) -> Plan:
         file = SweepFile.model_validate(tree.data)
         model = load_model(folder / file.model)
         designs = _designs(file, model, folder)
-        run = _asked(file.run, folder)
+        run = _asked(file.run, folder, model)
     except ValidationError as error:
         raise translated(error, tree) from None
     except ModelError as error:
@@ -209,8 +210,11 @@ def _columns(path: Path, model: Model) -> dict[str, list[float]]:
     }
 
 
-def _asked(run: Any, folder: Path) -> Run:
-    """The analysis, with the scenario it names read and its claims known."""
+def _asked(run: Any, folder: Path, model: Model) -> Run:
+    """The analysis, with the scenario it names read, its claims known, its criteria tried."""
+    if isinstance(run, CriteriaRun):
+        run.refuse_unknown(model)
+        return run.with_asked({name: _asked(each, folder, model) for name, each in run.ask.items()})
     if isinstance(run, TransientRun):
         source = run.scenario if run.scenario in KINDS else str(folder / run.scenario)
         return run.with_scenario(load_scenario(source))
