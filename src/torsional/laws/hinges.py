@@ -34,6 +34,51 @@ def hinges_torque(parameters: Array, angle: float, rate: float, memory: float, s
     return plain(torque, tangent, 0.0)
 
 
+def hinge_angles(parameters: Array, torque: Array) -> Array:
+    """Angles [rad] (laws, torques) at which laws with ``parameters`` (laws, 1 + 3 hinges) carry torques [Nm]; in a free
+    range, its middle.  Raises ModelError where no angle carries one.
+    """
+    gaps, sides, changes = (parameters[:, place::3] for place in (1, 2, 3))
+    edges = np.sort(np.hstack([gaps, np.zeros((len(gaps), 1))]), axis=1)
+    at = _torques(parameters, edges)
+    slope = [parameters[:, 0] + np.where(sides == side, changes, 0.0).sum(axis=1) for side in (-1.0, 1.0)]
+    low, high = ((slope[end] <= 0)[:, None] for end in (0, 1))
+    beyond = low & (torque < at[:, :1]) | high & (torque > at[:, -1:])
+    if beyond.any():
+        raise ModelError("no angle carries this torque", found=f"{torque[beyond.any(axis=0)][0]:g} Nm")
+    left, right = ((at[:, :, None] < torque).sum(axis=1), (at[:, :, None] <= torque).sum(axis=1))
+    last = edges.shape[1] - 1
+    middle = 0.5 * (_taken(edges, np.minimum(left, last)) + _taken(edges, np.maximum(right - 1, 0)))
+    before, behind = np.maximum(left - 1, 0), np.minimum(left, last)
+    rise = _taken(at, behind) - _taken(at, before)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (torque - _taken(at, before)) / rise * (_taken(edges, behind) - _taken(edges, before))
+        first = edges[:, :1] + (torque - at[:, :1]) / slope[0][:, None]
+        above = edges[:, -1:] + (torque - at[:, -1:]) / slope[1][:, None]
+    inside = np.where(left == 0, first, np.where(left > last, above, _taken(edges, before) + along))
+    return np.where(right > left, middle, inside)
+
+
+def hinge_slopes(parameters: Array, angle: Array) -> Array:
+    """Tangent stiffnesses [Nm/rad] (laws, angles) of such laws at angles [rad] (laws, angles)."""
+    slopes = np.broadcast_to(parameters[:, :1], angle.shape).copy()
+    for gap, side, change in (parameters[:, i : i + 3].T for i in range(1, parameters.shape[1], 3)):
+        slopes += np.where(depth(angle, 0.0, gap[:, None], side[:, None], 0.0) > 0.0, change[:, None], 0.0)
+    return slopes
+
+
+def _torques(parameters: Array, angle: Array) -> Array:
+    """Torques of such laws, as `hinges_torque` tells them."""
+    torques = parameters[:, :1] * angle
+    for gap, side, change in (parameters[:, i : i + 3].T[..., None] for i in range(1, parameters.shape[1], 3)):
+        torques += side * change * np.maximum(depth(angle, 0.0, gap, side, 0.0), 0.0)
+    return torques
+
+
+def _taken(table: Array, index: IntArray) -> Array:
+    return np.take_along_axis(table, index, axis=1)
+
+
 @dataclass(frozen=True)
 @checked_fields
 class Hinges(Law):
@@ -171,24 +216,7 @@ class Hinges(Law):
         torque = np.asarray(torque, dtype=float)
         if beside != 0.0:
             return super().angle(torque, beside)
-        edges = np.unique([*self.gaps, 0.0])
-        at = self.torque(edges)
-        slope = self.tangent(np.array([edges[0] - 1.0, edges[-1] + 1.0]))
-        beyond = (torque < at[0]) & (slope[0] <= 0) | (torque > at[-1]) & (slope[1] <= 0)
-        if beyond.any():
-            raise ModelError("no angle carries this torque", found=f"{torque[beyond].flat[0]:g} Nm")
-        left, right = np.searchsorted(at, torque, "left"), np.searchsorted(at, torque, "right")
-        free = np.where(right > left, 0.5 * (edges[np.minimum(left, edges.size - 1)] + edges[right - 1]), np.nan)
-        return np.where(right > left, free, self._inside(torque, edges, at, slope, left))
-
-    def _inside(self, torque: Array, edges: Array, at: Array, slope: Array, index: IntArray) -> Array:
-        low, high = np.clip(index - 1, 0, None), np.clip(index, None, edges.size - 1)
-        rise = at[high] - at[low]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            within = edges[low] + (torque - at[low]) / rise * (edges[high] - edges[low])
-            below = edges[0] + (torque - at[0]) / slope[0]
-            above = edges[-1] + (torque - at[-1]) / slope[1]
-        return np.where(index == 0, below, np.where(index == edges.size, above, within))
+        return np.asarray(hinge_angles(self.parameters[None], torque.ravel())[0].reshape(torque.shape))
 
     def describing_function(self, centre: ArrayLike, amplitude: ArrayLike) -> tuple[Array, Array]:
         """Mean torque [Nm] and first-harmonic stiffness [Nm/rad] under φ = centre + amplitude cos ψ.

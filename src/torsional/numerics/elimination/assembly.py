@@ -135,3 +135,15 @@ def assemble(w: Array, rows: IntArray, sums: int, slots: Array, design: int, lo:
             fill(w, row + L, lo, hi, h)
         if q < sums:
             measure(w, row, lo, hi)
+
+
+@njit(cache=True, error_model="numpy")
+def add_rest(w: Array, rows: IntArray, sums: int, rest: Array, frequency: int, step: int, lo: int, hi: int) -> None:
+    """Add what all designs have in common to lanes lo … hi, from (slots, 3, frequencies): real and imaginary part and,
+    of row sums, the squared size they were summed from; ``step`` 0 repeats one frequency."""
+    by, n = np.uint64(step), np.uint64(L)
+    for q in range(rows.size):
+        for part in range(3 if q < sums else 2):
+            row, values, at = np.uint64(rows[q]) + np.uint64(part) * n, rest[q, part], np.uint64(frequency)
+            for l in range(np.uint64(hi - lo)):
+                w[row + np.uint64(lo) + l] += values[at + l * by]

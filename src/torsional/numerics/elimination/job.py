@@ -53,6 +53,7 @@ class Job(NamedTuple):
     frequencies: tuple[Array, Array]
     loads: ComplexArray  # (designs or 1, frequencies or 1, right-hand sides, nodes)
     designs: int
+    rest: Array  # (slots, 3, frequencies) that all designs have in common, or none
 
 
 def like(table: Array, given: Array) -> Array:
@@ -96,7 +97,11 @@ def _table(values: ArrayLike | None, size: int, name: str) -> Array:
 
 
 def checked(
-    weights: Weights, values: tuple[ArrayLike | None, ...], frequencies: tuple[ArrayLike, ArrayLike], loads: ArrayLike
+    weights: Weights,
+    values: tuple[ArrayLike | None, ...],
+    frequencies: tuple[ArrayLike, ArrayLike],
+    loads: ArrayLike,
+    rest: Array | None = None,
 ) -> Job:
     """Check the shapes of all arrays against each other."""
     connections, masses = weights.connection.shape[1], weights.mass.shape[1]
@@ -112,33 +117,44 @@ def checked(
     counts = {table.shape[0] for table in (k, h, c, s, J, weights.connection, weights.mass, b)} - {1}
     if len(counts) > 1:
         raise ModelError("all arrays must agree on the number of designs", found=str(sorted(counts)))
-    return Job((k, h, c, s, J), weights, (omega, speed), b, max(counts, default=1))
+    common = _frozen(np.zeros((0, 3, 1)) if rest is None else rest)
+    return Job((k, h, c, s, J), weights, (omega, speed), b, max(counts, default=1), common)
 
 
 def solved(tape: Tape, route: Route, job: Job, loaded: tuple[int, ...], outputs: tuple[int, ...]) -> Response:
-    """Run the kernel over batches of designs, then redo what it flagged."""
-    rights, frequencies = job.loads.shape[2], job.frequencies[0].size
-    x = np.empty((job.designs, rights, len(outputs), frequencies), dtype=complex)
-    flagged = np.zeros((job.designs, frequencies), dtype=bool)
-    batch = max(1, _BATCH_FLOATS // (5 * tape.slot_row.size))
-    count = 0
-    for first in range(0, job.designs, batch):
-        part = slice(first, first + batch)
-        count += _run(tape, route, _part(job, part, min(batch, job.designs - first)), x[part], flagged[part])
+    """Run the kernel, then redo what it flagged."""
+    x, flagged, count = eliminated(tape, route, job, len(outputs))
     status = flagged.astype(np.int8)
     if count:
         _redo(job, np.array(loaded), np.array(outputs), x, status)
     return Response(x.transpose(0, 3, 1, 2), status)
 
 
-def _part(job: Job, part: slice, designs: int) -> Job:
+def eliminated(
+    tape: Tape, route: Route, job: Job, outputs: int
+) -> tuple[ComplexArray, NDArray[np.bool_], int]:
+    """Run the kernel over batches of designs: x (designs, right-hand sides, outputs, frequencies), which cases it
+    flagged (designs, frequencies), and how many."""
+    rights, frequencies = job.loads.shape[2], job.frequencies[0].size
+    x = np.empty((job.designs, rights, outputs, frequencies), dtype=complex)
+    flagged = np.zeros((job.designs, frequencies), dtype=bool)
+    batch = max(1, _BATCH_FLOATS // (5 * tape.slot_row.size))
+    count = 0
+    for first in range(0, job.designs, batch):
+        part = slice(first, first + batch)
+        count += _run(tape, route, part_of(job, part), x[part], flagged[part])
+    return x, flagged, count
+
+
+def part_of(job: Job, part: slice) -> Job:
     """The job of some of the designs."""
+    designs = len(range(*part.indices(job.designs)))
     if designs == job.designs:
         return job
     k, h, c, s, J = (table if table.shape[0] == 1 else table[part] for table in job.values)
     weights = Weights(*(table if table.shape[0] == 1 else table[part] for table in job.weights))
     loads = job.loads if job.loads.shape[0] == 1 else job.loads[part]
-    return Job((k, h, c, s, J), weights, job.frequencies, loads, designs)
+    return Job((k, h, c, s, J), weights, job.frequencies, loads, designs, job.rest)
 
 
 def _run(tape: Tape, route: Route, job: Job, x: ComplexArray, flagged: NDArray[np.bool_]) -> int:
@@ -153,6 +169,7 @@ def _run(tape: Tape, route: Route, job: Job, x: ComplexArray, flagged: NDArray[n
         (route.loads, route.outputs, route.forward, route.backward, route.fused, route.fused_backward),
         (len(tape.removals), tape.layout.size, loads.shape[2]),
         slots,
+        job.rest,
         job.weights.rows,
         job.frequencies,
         loads.reshape(-1).view(float),

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array, IntArray
-from torsional.numerics.elimination.assembly import assemble, fill, row_of
+from torsional.numerics.elimination.assembly import add_rest, assemble, fill, row_of
 from torsional.numerics.elimination.lanes import LANES as L
 from torsional.numerics.elimination.steps import GROWTH_LIMIT, execute
 from torsional.numerics.elimination.tape import GUARD, OMEGA, OMEGA_SQUARED, SPEED_SQUARED
@@ -77,7 +77,7 @@ def _segment(first: int, lane: int, frequencies: int, cases: int) -> tuple[int, 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _prepare(
-    w: Array, rows: IntArray, sums: int, slots: Array, weight_rows: IntArray, weights: Array,
+    w: Array, rows: IntArray, sums: int, slots: Array, rest: Array, weight_rows: IntArray, weights: Array,
     omega: Array, speed: Array, first: int, cases: int,
 ) -> None:  # fmt: skip
     """Fill the block that starts at case ``first`` with what its designs and frequencies make of each slot."""
@@ -86,6 +86,8 @@ def _prepare(
         design, frequency, step, stop = _segment(first, lane, omega.size, cases)
         _tune(w, omega, speed, frequency, lane, stop, step)
         assemble(w, rows, sums, slots, design, lane, stop)
+        if rest.size:
+            add_rest(w, rows, sums, rest, frequency, step, lane, stop)
         for q in range(weight_rows.shape[0]):
             fill(w, weight_rows[q, 0], lane, stop, weights[row_of(weights, design), q])
         lane = stop
@@ -145,6 +147,7 @@ def respond(
     route: tuple[IntArray, IntArray, IntArray, IntArray, IntArray, IntArray],
     sizes: tuple[int, int, int],
     slots: Array,
+    rest: Array,
     weights: Array,
     frequencies: tuple[Array, Array],
     loads: Array,
@@ -155,14 +158,15 @@ def respond(
     """Solve all cases; how many were flagged.
 
     plan: offsets of the slots, of the weights, program; route: as ``Route``; sizes: nodes, floats of workspace, right-
-    hand sides; loads: floats, ``strides`` apart by design, frequency and right-hand side; x: floats of (designs, right-
-    hand sides, outputs, frequencies) complex numbers.
+    hand sides; slots: (designs, slots, 5); rest: (slots, 3, frequencies) or empty, see `add_rest`; loads: floats,
+    ``strides`` apart by design, frequency and right-hand side; x: floats of (designs, right-hand sides, outputs,
+    frequencies) complex numbers.
     """
     (slot_row, weight_rows, program), (load_rows, output_rows, forward, backward, fused, fused_backward) = plan, route
     (omega, speed), (nodes, workspace, rights) = frequencies, sizes
     count, w = 0, _aligned(workspace)
     for first in range(0, flagged.size, L):
-        _prepare(w, slot_row, nodes, slots, weight_rows, weights, omega, speed, first, flagged.size)
+        _prepare(w, slot_row, nodes, slots, rest, weight_rows, weights, omega, speed, first, flagged.size)
         if rights == 1:
             _transport(w, load_rows, loads, strides, 0, omega.size, first, flagged.size)
             execute(w, fused)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 import numpy as np
@@ -12,7 +13,7 @@ from torsional.errors import ModelError, nearest
 from torsional.files.scenario_blocks import GearName, Scenario
 from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, Whole
 from torsional.model import Model
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.quantities import acceleration, order_speed, swing
 from torsional.results import labelled
 from torsional.solvers.map import response_map
@@ -22,7 +23,9 @@ from torsional.solvers.run_up import run_up_response
 from torsional.studies.base import VERDICTS
 from torsional.studies.register import claims
 from torsional.studies.scenarios.running import run_scenario
+from torsional.studies.sweeps.batch import Asked, Batch
 from torsional.studies.trucks import Trucks
+from torsional.system import BoolArray
 
 SpeedRange = Annotated[tuple[float, ...], Quantity("speed", above=0, shape="range")]
 POINTS = 57
@@ -58,6 +61,18 @@ class Linear(Asking):
     def asked_orders(self, model: Model) -> Array:
         """The orders asked."""
         return np.array(self.orders or model.engine_orders(1), dtype=float)
+
+    def gears_asked(self, model: Model) -> list[str]:
+        """The gears that are engaged one after the other."""
+        return [model.gear_name(self.gear or None)]
+
+    def possible(self, batch: Batch) -> bool:
+        """Whether designs can be asked together."""
+        return all(batch.answers(gear) for gear in self.gears_asked(batch.model))
+
+    def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
+        """Which of them."""
+        return np.asarray(np.all([batch.covers(gear, columns) for gear in self.gears_asked(batch.model)], axis=0))
 
     def place(self, model: Model) -> str:
         """The node asked."""
@@ -110,11 +125,20 @@ class ResponseRun(Linear):
         mean = model.full_load(speeds) if self.torque is None else np.full(speeds.size, self.torque)
         found = run_up_response(model, speeds, mean, self.gear or None, self.asked_orders(model))
         size = abs(acceleration(found.angle.sel(node=self.place(model)))).transpose("speed", "order")
-        return labelled(
-            {"acceleration": (("speed", "order"), size.values, "acceleration")},
-            {"speed": (speeds, "speed"), "order": (found.order.values, "engine_order")},
-            analysis="response",
-        )
+        return self._told(("speed", "order"), size.values, speeds, found.order.values)
+
+    def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
+        """The same of many designs."""
+        model = batch.model
+        speeds, orders, (gear,) = self.speeds(model), self.asked_orders(model), self.gears_asked(model)
+        mean = model.full_load(speeds) if self.torque is None else np.full(speeds.size, self.torque)
+        angles = batch.angles(gear, Asked(speeds, mean, orders, (self.place(model),), grid=False), columns)[:, 0]
+        return self._told(("design", "speed", "order"), size(angles) * np.outer(speeds, orders) ** 2, speeds, orders)
+
+    @staticmethod
+    def _told(dims: tuple[str, ...], values: Array, speeds: Array, orders: Array) -> xr.Dataset:
+        coordinates = {"speed": (speeds, "speed"), "order": (orders, "engine_order")}
+        return labelled({"acceleration": (dims, values, "acceleration")}, coordinates, analysis="response")
 
 
 class MapRun(Linear):
@@ -129,20 +153,46 @@ class MapRun(Linear):
         """Half the swing of a node's acceleration by the orders asked: the largest in reach of full load, by gear, and
         where it is."""
         speeds, torques = self.speeds(model), model.torques(self.torques)
-        found = response_map(
-            model, speeds, torques, self.gears or None, self.asked_orders(model), nodes=[self.place(model)], elements=[]
-        )
-        half = swing(acceleration(found.angle.isel(node=0))).where(found.within_full_load.astype(bool))
-        flat = half.transpose("gear", "mean_torque", "speed").values.reshape(half.sizes["gear"], -1)
-        at = np.nanargmax(np.where(np.isnan(flat), -np.inf, flat), axis=1)
+        names, orders = self.gears_asked(model), self.asked_orders(model)
+        found = response_map(model, speeds, torques, names, orders, nodes=[self.place(model)], elements=[])
+        ripple = acceleration(found.angle.isel(node=0)).transpose("gear", "mean_torque", "speed", "order")
+        half = _half_swing(ripple.values, orders)
+        return self._told((), half.reshape(len(names), -1), model, speeds, torques)
+
+    def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
+        """The same of many designs."""
+        model = batch.model
+        speeds, torques, orders = self.speeds(model), model.torques(self.torques), self.asked_orders(model)
+        names, asked = self.gears_asked(model), Asked(speeds, torques, orders, (self.place(model),), grid=True)
+        cells = torques.size * speeds.size
+        half = np.empty((len(next(iter(columns.values()))), len(names), cells))
+        for number, gear in enumerate(names):
+            angles = batch.angles(gear, asked, columns).reshape(len(half), cells, orders.size)
+            ripple = angles * -np.tile(np.outer(speeds, orders) ** 2, (torques.size, 1))
+            for row, values in zip(half, ripple, strict=True):
+                row[number] = _half_swing(values, orders)
+        return self._told(("design",), half, model, speeds, torques)
+
+    def gears_asked(self, model: Model) -> list[str]:
+        """Those of the map."""
+        return list(model.chosen_gears(self.gears or None))
+
+    def _told(
+        self, front: tuple[str, ...], half: Array, model: Model, speeds: Array, torques: Array
+    ) -> xr.Dataset:
+        """The largest in reach of full load of half swings (…, gear, mean torques × speeds), and where it is."""
+        inside = np.where(model.within_full_load(speeds, torques).ravel(), half, -np.inf)
+        at = np.where(np.isnan(inside), -np.inf, inside).argmax(axis=-1)
+        most = np.take_along_axis(half, at[..., None], axis=-1)[..., 0]
         row, column = np.unravel_index(at, (torques.size, speeds.size))
+        dims = (*front, "gear")
         return labelled(
             {
-                "acceleration_swing": (("gear",), flat[np.arange(at.size), at], "acceleration"),
-                "worst_speed": (("gear",), speeds[column], "speed"),
-                "worst_torque": (("gear",), torques[row], "torque"),
+                "acceleration_swing": (dims, most, "acceleration"),
+                "worst_speed": (dims, speeds[column], "speed"),
+                "worst_torque": (dims, torques[row], "torque"),
             },
-            {"gear": (half.gear.values.astype(str), "")},
+            {"gear": (np.array(self.gears_asked(model)), "")},
             analysis="map",
         )
 
@@ -198,6 +248,19 @@ class ClaimsRun(Asking):
 
 
 Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun
+
+
+def size(values: ComplexArray) -> Array:
+    """Magnitudes, of the same bits whatever stands beside a value."""
+    return np.asarray(np.sqrt(values.real**2 + values.imag**2))
+
+
+def _half_swing(ripple: ComplexArray, orders: Array) -> Array:
+    """Half the swing (…) of orders (…, orders): a single one's amplitude, else that of their sum over a cycle."""
+    if orders.size == 1:
+        return size(ripple[..., 0])
+    told = xr.DataArray(ripple, dims=[*(f"dim{n}" for n in range(ripple.ndim - 1)), "order"], coords={"order": orders})
+    return np.asarray(swing(told).values)
 
 
 def _filled(values: Array, count: int) -> Any:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from functools import cached_property
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 import xarray as xr
@@ -12,10 +13,13 @@ import xarray as xr
 from torsional.errors import ModelError
 from torsional.files.edit import changed
 from torsional.model import Model
+from torsional.numerics.arrays import IntArray
 from torsional.numerics.compiling import WATCH
 from torsional.studies.crew import marked
+from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.designs import Designs, Values
 from torsional.studies.sweeps.store import json_of
+from torsional.system import BoolArray
 
 OK, REFUSED, FAILED, CRASHED = range(4)
 STATUS = ("ok", "refused: the model or the analysis cannot be", "failed: an error that nobody expected",
@@ -24,9 +28,27 @@ STATUS = ("ok", "refused: the model or the analysis cannot be", "failed: an erro
 CRASHES = 3
 """How often a design may end a process before it is set aside."""
 UNEVEN = "its answer has other names, sizes or kinds than the first one"
+MANY = 200
+"""Designs from which on they are asked together where that can be: finding their numbers costs as much as fifty."""
+AT_ONCE = 1000
+"""Designs asked in one call, for the memory's sake."""
 Answer: TypeAlias = xr.Dataset | Mapping[str, Any]
 Run: TypeAlias = Callable[[Model], Answer]
 Build: TypeAlias = Model | Callable[..., Model]
+
+
+@runtime_checkable
+class Together(Protocol):
+    """An analysis that can ask designs together, through the numbers of their systems."""
+
+    def possible(self, batch: Batch) -> bool:
+        """Whether it can ask these designs so."""
+
+    def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
+        """Which of some designs (designs,); the others are asked one by one."""
+
+    def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
+        """The answers of designs that are covered, ``design`` in front: as those of each alone, but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -47,25 +69,40 @@ class Work:
         ``status`` (design,); ``told``: reasons by number and the shapes of answers, as text; ``kind`` (design,): which
         of the shapes an answer has, -1 for none; ``answer.K.NAME``: the answers of kind K, one after the other.
         """
-        count = stop - start
-        status, kind = np.zeros(count, np.int8), np.full(count, -1, np.int32)
-        reasons: dict[int, str] = {}
-        shapes: list[str] = []
-        answers: list[list[xr.Dataset]] = []
+        piece = _Piece(start, stop - start)
         with WATCH.silent():
-            for place, values in enumerate(self.designs.rows(start, stop)):
-                status[place], reason, answer = self._tried(start + place, values, aside)
-                reasons |= {start + place: reason} if reason else {}
+            left = self._together(piece, aside)
+            for place, values in zip(left, self._rows(start, stop, left), strict=True):
+                status, reason, answer = self._tried(start + place, values, aside)
+                piece.tell(place, status, reason)
                 if answer is not None:
-                    kind[place] = _place_of(json_of(shape_of(answer)), shapes, answers)
-                    answers[kind[place]].append(answer)
-        text = json_of({"shapes": shapes, "reasons": reasons}).encode()
-        stacked = {
-            f"answer.{number}.{name}": np.stack([answer[name].values for answer in alike])
-            for number, alike in enumerate(answers)
-            for name in alike[0].data_vars
-        }
-        return {"status": status, "kind": kind, "told": np.frombuffer(text, np.uint8), **stacked}
+                    piece.take(np.array([place]), answer.expand_dims("design"))
+        return piece.arrays()
+
+    def _rows(self, start: int, stop: int, left: Sequence[int]) -> list[Values]:
+        rows = self.designs.rows(start, stop) if left else []
+        return [rows[place] for place in left]
+
+    @cached_property
+    def _batch(self) -> Batch | None:
+        """Designs asked together, where the analysis can and there are enough of them."""
+        if not (isinstance(self.build, Model) and isinstance(self.run, Together) and len(self.designs) >= MANY):
+            return None
+        batch = Batch.of(self.build, self.designs)
+        return batch if batch is not None and self.run.possible(batch) else None
+
+    def _together(self, piece: _Piece, aside: Collection[int]) -> list[int]:
+        """Answer the designs that can be asked together; the places of those that are left."""
+        every = np.arange(piece.count)
+        if self._batch is None or not isinstance(self.run, Together):
+            return every.tolist()
+        marked(piece.start)
+        columns = self.designs.columns(piece.start, piece.start + piece.count)
+        fine = self.run.covers(self._batch, columns) & ~np.isin(every + piece.start, list(aside))
+        for first in range(0, int(fine.sum()), AT_ONCE):
+            chosen = every[fine][first : first + AT_ONCE]
+            piece.take(chosen, self.run.many(self._batch, _chosen(columns, chosen)))
+        return every[~fine].tolist()
 
     def _tried(self, number: int, values: Values, aside: Collection[int]) -> tuple[int, str, xr.Dataset | None]:
         if number in aside:
@@ -78,6 +115,53 @@ class Work:
             return REFUSED, str(error), None
         except Exception as error:  # one design's defect must not cost the answers of a million others
             return FAILED, f"{type(error).__name__}: {error}", None
+
+
+def _chosen(columns: Mapping[str, Any], places: IntArray) -> dict[str, Any]:
+    return {
+        name: column[places] if isinstance(column, np.ndarray) else [column[place] for place in places]
+        for name, column in columns.items()
+    }
+
+
+@dataclass
+class _Piece:
+    """What comes of a stretch of designs, in the order in which it is found."""
+
+    start: int
+    count: int
+
+    def __post_init__(self) -> None:
+        self.status, self.kind = np.zeros(self.count, np.int8), np.full(self.count, -1, np.int32)
+        self.reasons: dict[int, str] = {}
+        self.shapes: list[str] = []
+        self.parts: list[list[tuple[IntArray, xr.Dataset]]] = []
+
+    def tell(self, place: int, status: int, reason: str) -> None:
+        """What became of one design."""
+        self.status[place] = status
+        if reason:
+            self.reasons[self.start + place] = reason
+
+    def take(self, places: IntArray, answers: xr.Dataset) -> None:
+        """Answers of some designs, with ``design`` in front."""
+        shape = json_of(shape_of(answers.isel(design=0)))
+        if shape not in self.shapes:
+            self.shapes.append(shape)
+            self.parts.append([])
+        self.kind[places] = number = self.shapes.index(shape)
+        self.parts[number].append((places, answers))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All of it in the order of the designs."""
+        text = json_of({"shapes": self.shapes, "reasons": self.reasons}).encode()
+        found: dict[str, np.ndarray] = {"status": self.status, "kind": self.kind, "told": np.frombuffer(text, np.uint8)}
+        for number, parts in enumerate(self.parts):
+            order = np.argsort(np.concatenate([places for places, _ in parts]))
+            for name in parts[0][1].data_vars:
+                values = np.concatenate([answers[name].values for _, answers in parts])
+                found[f"answer.{number}.{name}"] = values if (order[1:] > order[:-1]).all() else values[order]
+        return found
 
 
 def _figures(answer: Answer) -> xr.Dataset:
@@ -100,11 +184,3 @@ def shape_of(answer: xr.Dataset) -> dict[str, Any]:
 
 def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in attrs.items()}
-
-
-def _place_of(shape: str, shapes: list[str], answers: list[list[xr.Dataset]]) -> int:
-    """Which of the shapes that were met this is; a new one is added."""
-    if shape not in shapes:
-        shapes.append(shape)
-        answers.append([])
-    return shapes.index(shape)
