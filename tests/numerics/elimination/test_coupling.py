@@ -73,7 +73,8 @@ def test_a_case_has_the_same_bits_alone() -> None:
     ones, nothing = np.full(len(weights), 1e4), np.zeros(len(weights))
     rest = plan.rest((ones, nothing, ones * 1e-3, nothing), np.ones(NODES), (omega, speed), [0], np.ones((7, 1)), [1])
     stiffness = np.linspace(5e3, 5e4, 301)[:, None] * np.ones(plan.connections.size)
-    values = (stiffness, nothing[None, plan.connections], 1e-3 * ones[None, plan.connections], nothing[None, plan.connections])
+    others = (nothing, 1e-3 * ones, nothing)
+    values = (stiffness, *(table[None, plan.connections] for table in others))
     every, _ = plan.solve(rest, values, np.ones((1, 1)))
     for design in (0, 63, 300):
         alone, _ = plan.solve(rest, (stiffness[design : design + 1], *values[1:]), np.ones((1, 1)))

@@ -1,8 +1,9 @@
 """The numbers of a system as functions of a plan's parameters, found by building a few designs and proven on others.
 
 Most parameters of a model file come into the equations unchanged, added to others, squared (the order that an absorber
-is tuned to) or divided by (the angle at which a spring carries a torque).  Where every number of the assembled system follows from the parameters in this way, designs
-need not be built one by one.  What does not follow is not guessed: then there is no `Fit`.
+is tuned to) or divided by (the angle at which a spring carries a torque).  Where every number of the assembled system
+follows from the parameters in this way, designs need not be built one by one.  What does not follow is not guessed:
+then there is no `Fit`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _BASES: tuple[Callable[[Array], Array], ...] = (lambda p: p, lambda p: p * p, la
 
 @dataclass(frozen=True, eq=False)
 class Told:
-    """The ``numbers`` of a system in one row, and a ``form`` that tells everything else about it."""
+    """The ``numbers`` of a system in one row, and a ``form`` that tells all else that linear analyses look at."""
 
     numbers: Array
     form: tuple[Any, ...]
@@ -41,7 +42,7 @@ class Told:
         rows += [law.parameters for law in c.laws if law is not None]
         kinds = tuple(None if law is None else (type(law), law.parameters.size) for law in c.laws)
         arrays = tuple(a.tobytes() for a in (system.T, c.weights, m.weights, c.whole_speed))
-        form = system.nodes, c.names, m.names, kinds, arrays, repr(c.loads), repr(m.switches), repr(c.swings)
+        form = system.nodes, c.names, m.names, kinds, arrays, repr(c.loads), repr(m.switches)
         return cls(np.concatenate(rows), form)
 
 

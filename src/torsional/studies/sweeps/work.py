@@ -99,9 +99,13 @@ class Work:
         marked(piece.start)
         columns = self.designs.columns(piece.start, piece.start + piece.count)
         fine = self.run.covers(self._batch, columns) & ~np.isin(every + piece.start, list(aside))
-        for first in range(0, int(fine.sum()), AT_ONCE):
-            chosen = every[fine][first : first + AT_ONCE]
-            piece.take(chosen, self.run.many(self._batch, _chosen(columns, chosen)))
+        chosen = [every[fine][first : first + AT_ONCE] for first in range(0, int(fine.sum()), AT_ONCE)]
+        try:
+            found = [self.run.many(self._batch, _chosen(columns, places)) for places in chosen]
+        except ModelError:  # what the analysis refuses it refuses for every design, each with its reason
+            return every.tolist()
+        for places, answers in zip(chosen, found, strict=True):
+            piece.take(places, answers)
         return every[~fine].tolist()
 
     def _tried(self, number: int, values: Values, aside: Collection[int]) -> tuple[int, str, xr.Dataset | None]:
