@@ -7,9 +7,6 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-import xarray as xr
-
 from torsional import __version__
 from torsional.cli.answers import print_json
 from torsional.cli.documents import described, json_text
@@ -20,10 +17,11 @@ from torsional.cli.progress import counting
 from torsional.cli.tables import Column, Table, print_tables
 from torsional.errors import ModelError
 from torsional.results import save_results
+from torsional.studies.sweeps.collected import Collected
 from torsional.studies.sweeps.plan import Plan, load_plan
 from torsional.studies.sweeps.store import CHUNKS
 from torsional.studies.sweeps.sweep import Pieces
-from torsional.studies.sweeps.work import OK, STATUS
+from torsional.studies.sweeps.work import OK
 from torsional.units import show
 
 SUFFIXES = (".nc", ".csv", ".json")
@@ -80,23 +78,27 @@ def _worked(pieces: Pieces, asked: Plan, processes: int, silent: bool) -> None:
         raise Kept(f"{told} {pieces.store.folder}; --resume goes on") from None
 
 
-def _deliver(found: xr.Dataset, asked: Plan, folder: Path, outputs: Sequence[Path], as_json: bool, quiet: bool) -> None:
+def _deliver(
+    found: Collected, asked: Plan, folder: Path, outputs: Sequence[Path], as_json: bool, quiet: bool
+) -> None:
     head = {"torsional": __version__, "command": "sweep", "plan": asked.name, "folder": str(folder)}
-    counts = {word: found.attrs[f"designs {word}"] for word in (each.partition(":")[0] for each in STATUS)}
     wanted = as_json or any(path.suffix.lower() == ".json" for path in outputs)
-    text = json_text({**head, "designs": counts, "result": described(found)}) if wanted else ""
+    text = json_text({**head, "designs": found.counts, "result": described(found.whole())}) if wanted else ""
     written({path: _writer(found, path, text) for path in outputs})
     if as_json:
         print_json(text)
     elif not quiet:
-        print_tables([_table(asked, counts), *_ranges(found)])
+        print_tables([_table(asked, found.counts), *_ranges(found)])
     if not quiet:
         print("\n".join(f"written: {path}" for path in (folder, *outputs)), file=sys.stderr)
     _tell_failures(found)
 
 
-def _writer(found: xr.Dataset, path: Path, text: str) -> Writer:
-    return text_writer(text) if path.suffix.lower() == ".json" else lambda draft: save_results(found, draft)
+def _writer(found: Collected, path: Path, text: str) -> Writer:
+    """A file that takes the answers chunk by chunk where its format lets it."""
+    if path.suffix.lower() == ".json":
+        return text_writer(text)
+    return found.write if path.suffix.lower() == ".nc" else lambda draft: save_results(found.whole(), draft)
 
 
 def _table(asked: Plan, counts: dict[str, int]) -> Table:
@@ -104,21 +106,18 @@ def _table(asked: Plan, counts: dict[str, int]) -> Table:
     return Table(f"{asked.name}: {sum(counts.values())} designs", [Column("designs"), Column("number")], rows)
 
 
-def _ranges(found: xr.Dataset) -> list[Table]:
+def _ranges(found: Collected) -> list[Table]:
     """Smallest, median and largest of every figure over all designs and all else."""
-    rows: list[Sequence[object]] = []
-    for name, values in found.data_vars.items():
-        numbers = values.values[np.isfinite(values.values)] if values.dtype.kind in "fiu" else np.zeros(0)
-        if name not in ("status", "reason") and numbers.size:
-            quantity = str(values.attrs.get("quantity", "number"))
-            rows.append([str(name), *(show(v, quantity) for v in (numbers.min(), np.median(numbers), numbers.max()))])
+    rows = [
+        [name, *(show(value, found.quantity(name)) for value in values)] for name, values in found.ranges().items()
+    ]
     columns = [Column("figure"), Column("least"), Column("median"), Column("most")]
     return [Table("Over all designs", columns, rows)] if rows else []
 
 
-def _tell_failures(found: xr.Dataset) -> None:
+def _tell_failures(found: Collected) -> None:
     """Say why designs have no answer, the most frequent reasons first, and end with an exit code of its own."""
-    state, reasons = found.status.values.ravel(), found.reason.values.ravel()
+    state, reasons = found.states
     failed = state != OK
     if not failed.any():
         return

@@ -12,17 +12,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from torsional import __version__
 from torsional.errors import ModelError
-from torsional.results import SCHEMA
 from torsional.studies.crew import NOWHERE, Crew, Lost
+from torsional.studies.sweeps.collected import Collected
 from torsional.studies.sweeps.designs import Designs, grid
 from torsional.studies.sweeps.identity import code, plan_of
 from torsional.studies.sweeps.store import Store, written
-from torsional.studies.sweeps.work import CRASHES, FAILED, STATUS, UNEVEN, Build, Run, Work
+from torsional.studies.sweeps.work import CRASHES, Build, Run, Work
 from torsional.units import quoted
 
 CHUNK = 100
@@ -67,7 +65,7 @@ def sweep(
         at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
         pieces = Pieces.of(Work(build, designs, run), at, chunk)
         pieces.worked(processes, progress)
-        return pieces.collected()
+        return pieces.collected().whole()
 
 
 @dataclass(frozen=True)
@@ -137,38 +135,9 @@ class Pieces:
             return Counter()
         return Counter({int(design): int(times) for design, times in told.items()})
 
-    def collected(self) -> xr.Dataset:
-        """All chunks as one Dataset; answers of another shape than the first are failures."""
-        held = [(n * self.size, chunk) for n in range(self.count) if (chunk := self.store.get(n)) is not None]
-        told = [json.loads(chunk["told"].tobytes()) for _, chunk in held]
-        status = np.concatenate([chunk["status"] for _, chunk in held])
-        reasons = {int(number): reason for each in told for number, reason in each["reasons"].items()}
-        first = next((each["shapes"][0] for each in told if each["shapes"]), '{"variables": {}, "coordinates": {}}')
-        shaped = json.loads(first)
-        values = {name: _none((status.size, *size), kind) for name, (_, size, kind, _) in shaped["variables"].items()}
-        for (start, chunk), words in zip(held, told, strict=True):
-            for number, shape in enumerate(words["shapes"]):
-                designs = start + np.flatnonzero(chunk["kind"] == number)
-                if shape == first:
-                    for name, into in values.items():
-                        into[designs] = chunk[f"answer.{number}.{name}"]
-                else:
-                    status[designs] = FAILED
-                    reasons |= dict.fromkeys(designs.tolist(), UNEVEN)
-        return _on_axes(_dataset(shaped, values, status, reasons), self.work.designs)
-
-
-def _dataset(
-    shape: Mapping[str, Any], values: Mapping[str, np.ndarray], status: np.ndarray, reasons: Mapping[int, str]
-) -> xr.Dataset:
-    """Answers of one shape along the designs, with what became of each."""
-    data = {name: (("design", *dims), values[name], attrs) for name, (dims, _, _, attrs) in shape["variables"].items()}
-    labels = {name: (dims, marks, attrs) for name, (dims, marks, attrs) in shape["coordinates"].items()}
-    texts = np.array([reasons.get(number, "") for number in range(status.size)])
-    found = xr.Dataset({**data, "status": ("design", status), "reason": ("design", texts)}, labels)
-    found.status.attrs |= {"flag_values": list(range(len(STATUS))), "flag_meanings": "; ".join(STATUS)}
-    counts = {f"designs {word.partition(':')[0]}": int((status == n).sum()) for n, word in enumerate(STATUS)}
-    return found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
+    def collected(self) -> Collected:
+        """The answers of all chunks."""
+        return Collected(self.work.designs, self.size, self.count, self.store.get)
 
 
 def _refuse_unsendable(*functions: object) -> None:
@@ -192,34 +161,6 @@ def _writing(folder: str | os.PathLike[str]) -> Iterator[None]:
         remedy = "what was worked out is kept: make room, and go on with the same call"
         found = error.strerror or str(error)
         raise ModelError("the folder cannot be written", where=str(folder), found=found, remedy=remedy) from None
-
-
-def _none(size: Sequence[int], kind: str) -> np.ndarray:
-    """No answers yet: no numbers, or zeros of whole ones."""
-    dtype = np.dtype(kind)
-    return np.full(size, np.nan if dtype.kind in "fc" else np.zeros((), dtype)[()], dtype)
-
-
-def _on_axes(data: xr.Dataset, designs: Designs) -> xr.Dataset:
-    """The designs' values as coordinates: of a grid a dimension each, else along ``design``."""
-    if designs.method != "grid":
-        columns = designs.columns(0, len(designs))
-        return data.assign_coords({name: ("design", _labels(values)) for name, values in columns.items()})
-    shape = {name: len(axis.levels) for name, axis in designs.axes.items()}
-    dims = tuple(shape)
-    found = {}
-    for name, values in data.data_vars.items():
-        reshaped = values.values.reshape(*shape.values(), *values.shape[1:])
-        found[name] = (dims + values.dims[1:], reshaped, values.attrs)
-    labels = {name: (name, _labels(axis.levels)) for name, axis in designs.axes.items()}
-    return xr.Dataset(found, {**data.coords, **labels}, data.attrs)
-
-
-def _labels(values: Any) -> np.ndarray:
-    listed = list(values)
-    plain = all(isinstance(value, int | float | str | bool) for value in listed)
-    same = len({isinstance(value, str) for value in listed}) == 1
-    return np.array(listed if plain and same else [json.dumps(value) for value in listed])
 
 
 _HERE: dict[str, Pieces] = {}
