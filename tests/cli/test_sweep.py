@@ -12,6 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.studies.test_sweep_plan import ROOT, planned
 
@@ -77,3 +78,45 @@ def test_ctrl_c_keeps_what_was_worked_out(tmp_path: Path) -> None:
     plan = load_plan(path)
     pieces = Pieces.of(plan.work, tmp_path / "plan.sweep", plan.chunk)
     assert 3 <= pieces.count - len(pieces.store.missing(pieces.count)) < pieces.count
+
+
+BAD = (("rotor", -8.0, 60e3, 5.0), ("shaft", 8.0, 0.0, 5.0), ("damping", 8.0, 60e3, -5.0))
+"""What may be wrong with a design: an inertia, a stiffness, a damping."""
+
+
+def failing(folder: Path, count: int, processes: int = 1) -> Path:
+    """A plan of a table in which exactly one design of a hundred must fail, each for one of three reasons."""
+    rotors, bad = np.linspace(4.0, 12.0, count), np.arange(37, count, 100)
+    rows = [[rotor, 60e3, 5.0] for rotor in rotors]
+    for place, number in enumerate(bad):
+        rows[number] = [value * (1 + 0.01 * place) for value in BAD[place % 3][1:]]
+    paths = "components.rotor.inertia,components.shaft.stiffness,components.coupling.damping"
+    text = "\n".join([paths, *(",".join(map(repr, map(float, row))) for row in rows)])
+    (folder / "designs.csv").write_text(text, encoding="utf-8")
+    path = folder / "plan.yaml"
+    path.write_text(
+        f"torsional_sweep: 1\nmodel: {ROOT / 'src' / 'torsional' / 'data' / 'line.yaml'}\n"
+        "designs: {method: table, file: designs.csv}\nrun: {analysis: modes, count: 2}\n"
+        f"processes: {processes}\n", encoding="utf-8",
+    )  # fmt: skip
+    return path
+
+
+def counted_failures(torsional: Run, path: Path, count: int) -> None:
+    """All of them are accounted for by status and reason, the rest has answers, and the exit code says so."""
+    told = torsional("sweep", str(path), "-o", "found.nc")
+    bad = np.arange(37, count, 100)
+    assert told.code == 3 and f"{bad.size} of {count} designs have no answer" in told.err
+    for place, name in enumerate(("rotor.inertia", "shaft.stiffness", "coupling.damping")):
+        assert f"{bad[place::3].size} × components.{name}: must" in told.err
+    found = tv.load_results("found.nc")
+    assert np.flatnonzero(found.status.values).tolist() == bad.tolist() and set(found.status.values[bad]) == {1}
+    assert np.flatnonzero(found.reason.values != "").tolist() == bad.tolist()
+    assert np.flatnonzero(np.isnan(found.frequency.values).any(axis=1)).tolist() == bad.tolist()
+    counts = [found.attrs[f"designs {word}"] for word in ("ok", "refused", "failed", "crashed")]
+    assert counts == [count - bad.size, bad.size, 0, 0]
+    fine = np.delete(np.arange(count), bad)
+    inertia = found["components.rotor.inertia"].values[fine]
+    assert (np.diff(inertia) > 0).all() and (np.diff(found.frequency.values[fine, 0]) < 0).all()
+    told = torsional("sweep", str(path), "--status")
+    assert f"{count} of {count} designs are worked out (100.0 %); {bad.size} refused; " in told.out

@@ -108,6 +108,20 @@ def test_tables_have_units_in_their_header(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("method", "count", "designs"), [("latin_hypercube", 9, 9), ("morris", 9, 27), ("saltelli", 16, 64)]
+)
+def test_a_tolerance_is_about_the_models_own_value(tmp_path: Path, method: str, count: int, designs: int) -> None:
+    text = PLAN.replace("low: 15 kNm/rad, high: 35 kNm/rad, points: 3", "tolerance: 10 %")
+    text = text.replace('values: [1.0, "1.4 kgm²"]', "tolerance: 0.25, spacing: logarithmic")
+    path = planned(tmp_path, text=text.replace("chunk: 4", f"designs: {{{{method: {method}, count: {count}}}}}"))
+    plan = load_plan(path)
+    stiffness, inertia = plan.work.designs.axes.values()
+    assert (stiffness.low, stiffness.high) == pytest.approx((22.5e3, 27.5e3), rel=1e-15) and not stiffness.log
+    assert (inertia.low, inertia.high) == pytest.approx((0.9, 1.5), rel=1e-15) and inertia.log
+    assert len(plan.work.designs) == designs
+
+
+@pytest.mark.parametrize(
     ("old", "new", "told"),
     [
         ("torsional_sweep: 1", "torsional_sweep: 2", "written for a later torsional"),
@@ -127,6 +141,25 @@ def test_tables_have_units_in_their_header(tmp_path: Path) -> None:
         ("analysis: modes", "analysis: mods", "mods"),
         ("count: 3", "cuont: 3", "the key is unknown.*did you mean 'count'"),
         ("chunk: 4", "chunk: 0", "chunk"),
+        (
+            "low: 15 kNm/rad, high: 35 kNm/rad",
+            "tolerance: 10",
+            "over.0.tolerance .*too large; found 10.*as 0.1 or 10 %",
+        ),
+        ("low: 15 kNm/rad, high: 35 kNm/rad", "tolerance: -10 %", "over.0.tolerance .*must be positive"),
+        ("low: 15 kNm/rad, high", "tolerance: 10 %, high", "has ends or a tolerance, not both"),
+        ("values: [1.0", "tolerance: 10 %, values: [1.0", "values or ends, not both"),
+        (
+            "clutch.stiffness, low: 15 kNm/rad, high: 35 kNm/rad",
+            "clutch.stifness, tolerance: 10 %",
+            "did you mean 'stiffness'",
+        ),
+        (
+            "clutch.stiffness, low: 15 kNm/rad, high: 35 kNm/rad",
+            "gearbox.ratios, tolerance: 10 %",
+            r"over.0.parameter .*about one value that the model file gives, other than 0; found 'gearbox.ratios'",
+        ),
+        ("chunk: 4", "designs: {method: saltelli, count: 2}", r"need more base points; found 2; allowed: >= 16"),
         ("chunk: 4", "designs: {method: sobol}", "the key 'count' is missing"),
         ("chunk: 4", "designs: {method: table}", "the key 'file' is missing"),
         ('[1.0, "1.4 kgm²"]', "[-1.0]", "the model refuses it: absorber.primary_inertia: must be positive; found -1"),
@@ -143,6 +176,9 @@ def test_bad_plans_are_refused(tmp_path: Path, old: str, new: str, told: str) ->
         load_plan(path)
 
 
-def test_the_plan_of_the_examples_is_one() -> None:
-    plan = load_plan(ROOT / "examples" / "plans" / "clutch_and_primary.yaml")
+def test_the_plans_of_the_examples_are_plans() -> None:
+    folder = ROOT / "examples" / "plans"
+    plan = load_plan(folder / "clutch_and_primary.yaml")
     assert len(plan.work.designs) == 15 and plan.name == "clutch stiffness and primary inertia"
+    assert len(load_plan(folder / "what_matters.yaml").work.designs) == 140
+    assert len(load_plan(folder / "tolerances.yaml").work.designs) == 400

@@ -226,5 +226,8 @@ Folder = Annotated[
     Path | None,
     _taking("--folder", metavar="FOLDER", help="Where pieces are kept; default: the plan's name and .sweep."),
 ]
+Figures = Annotated[
+    list[str] | None, _taking("--figure", metavar="NAME", help="A figure of the answer; may be repeated; default: all.")
+]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")]
 Status = Annotated[bool, typer.Option("--status", help="Tell how far the folder is, and do nothing.")]

@@ -1,6 +1,7 @@
 """Pictures: one function a picture, from a Dataset or DataArray to a matplotlib Figure."""
 
 from torsional.plots.arcs import plot_arc_friction, plot_arc_losses
+from torsional.plots.bands import plot_bands
 from torsional.plots.branches import plot_branches
 from torsional.plots.campbell import plot_campbell, plot_resonance_speeds
 from torsional.plots.chain import plot_chain
@@ -15,6 +16,7 @@ from torsional.plots.orders import plot_gears, plot_order_cuts
 from torsional.plots.periodic import plot_periodic
 from torsional.plots.region import plot_region
 from torsional.plots.scenario import plot_scenario
+from torsional.plots.sensitivity import plot_sensitivities
 from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
 from torsional.plots.springs import plot_characteristic, plot_travel
 from torsional.plots.style import panels, save_png, save_svg
@@ -25,6 +27,7 @@ __all__ = [
     "panels",
     "plot_arc_friction",
     "plot_arc_losses",
+    "plot_bands",
     "plot_branches",
     "plot_campbell",
     "plot_chain",
@@ -49,6 +52,7 @@ __all__ = [
     "plot_regression",
     "plot_resonance_speeds",
     "plot_scenario",
+    "plot_sensitivities",
     "plot_signals",
     "plot_solutions",
     "plot_sweep",

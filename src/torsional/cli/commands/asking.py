@@ -52,6 +52,43 @@ def sweep(
     return job("sweep", **locals())
 
 
+@app.command()
+def sensitivity(
+    plan: o.PlanFile,
+    figure: o.Figures = None,
+    folder: o.Folder = None,
+    resume: o.Resume = False,
+    processes: o.Processes = 0,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Which parameters of a sweep move its figures.
+
+    Works through a plan whose designs are chosen by morris or saltelli, as sweep does, and tells Morris's elementary
+    effects or Sobol's shares of the variance.  Exit code 3 where some designs have no answer.
+    """
+    return job("sensitivity", **locals())
+
+
+@app.command()
+def bands(
+    plan: o.PlanFile,
+    folder: o.Folder = None,
+    resume: o.Resume = False,
+    processes: o.Processes = 0,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Bands in which figures lie for most designs, as order curves under tolerances.
+
+    Works through a plan as sweep does, and tells percentiles of every figure beside the unchanged model's.  Exit code 3
+    where some designs have no answer.
+    """
+    return job("bands", **locals())
+
+
 app.add_typer(
     typer.Typer(cls=StudyGroup, rich_markup_mode=None),
     name="study",

@@ -99,11 +99,12 @@ class ModesRun(Asking):
         found = found.isel(mode=np.flatnonzero(found.frequency.values > 0)[: self.count])
         damped = damped_modes(system)
         nearest = [int(abs(damped.frequency.values - f).argmin()) for f in found.frequency.values]
-        main = next(iter(model.engine_orders(1)), np.nan)
+        orders = model.engine_orders(1)
+        speeds = order_speed(found.frequency, orders[0]).values if len(orders) else np.full(found.sizes["mode"], np.nan)
         values = {
             "frequency": (found.frequency.values, "frequency"),
             "damped_ratio": (damped.damping_ratio.values[nearest], "damping_ratio"),
-            "order_speed": (order_speed(found.frequency, main).values, "speed"),
+            "order_speed": (speeds, "speed"),
         }
         return labelled(
             {name: (("mode",), _filled(v, self.count), quantity) for name, (v, quantity) in values.items()},
@@ -138,7 +139,9 @@ class ResponseRun(Linear):
     @staticmethod
     def _told(dims: tuple[str, ...], values: Array, speeds: Array, orders: Array) -> xr.Dataset:
         coordinates = {"speed": (speeds, "speed"), "order": (orders, "engine_order")}
-        return labelled({"acceleration": (dims, values, "acceleration")}, coordinates, analysis="response")
+        data = labelled({"acceleration": (dims, values, "acceleration")}, coordinates, analysis="response")
+        data.acceleration.attrs["amplitude"] = "0-peak"
+        return data
 
 
 class MapRun(Linear):

@@ -161,7 +161,8 @@ class Collected:
         flags = {"status": (front, status.reshape(shape), told), "reason": (front, reasons.reshape(shape))}
         found = xr.Dataset({**data, **flags}, self._labels())
         counts = {f"designs {word}": count for word, count in self.counts.items()}
-        return found.assign_attrs(analysis="sweep", torsional_version=__version__, schema=SCHEMA, **counts)
+        head = {"analysis": "sweep", "torsional_version": __version__, "schema": SCHEMA}
+        return found.assign_attrs(**head, sampling=json.dumps(self.designs.told), **counts)
 
     def _labels(self) -> dict[str, Any]:
         """Coordinates: those of the answers, and the designs' values."""

@@ -17,10 +17,11 @@ from scipy.stats import qmc
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
+from torsional.studies.sweeps.blocks import BLOCKS, LEAST, WORDS, block_size, drawn, salib
 
 Values: TypeAlias = Mapping[str, Any]
 """Values of one design by parameter."""
-METHODS = ("grid", "latin_hypercube", "sobol", "table")
+METHODS = ("grid", "latin_hypercube", "sobol", "morris", "saltelli", "table")
 MOST = 100_000_000
 """Designs that one plan may have."""
 
@@ -66,9 +67,9 @@ class Axis:
 class Designs:
     """Designs 0 to ``count`` − 1 over named axes; grids have the last parameter fastest.
 
-    ``method``: one of `METHODS`; ``seed``: of the hypercube or of the scrambling of Sobol's points.  Raises ModelError
+    ``method``: one of `METHODS`; ``seed``: of what is drawn, or of the scrambling of Sobol's points.  Raises ModelError
     for an unknown method, a grid over an axis without levels, columns of a table that differ in length, more designs
-    than 1e8.
+    than 1e8; of designs in blocks for too few or broken ones, and where SALib is missing.
 
     >>> grid({"stiffness": [1e4, 2e4], "damping": [5.0, 10.0, 20.0]}).rows(2, 4)
     [{'stiffness': 10000.0, 'damping': 20.0}, {'stiffness': 20000.0, 'damping': 5.0}]
@@ -89,6 +90,28 @@ class Designs:
         plain = [name for name, axis in self.axes.items() if not axis.levels]
         if plain and self.method in ("grid", "table"):
             raise ModelError(f"a {self.method} needs levels", where=plain[0], remedy="list them, or give their count")
+        if self.method in BLOCKS:
+            self._refuse_few()
+
+    def _refuse_few(self) -> None:
+        """Too few blocks for a sensitivity, and a library that is missing, are told before any work."""
+        salib("util")
+        blocks, rest = divmod(self.count, self.block)
+        if rest or blocks < LEAST[self.method]:
+            what, least = WORDS[self.method], LEAST[self.method]
+            problem = f"sensitivities need more {what}" if not rest else f"{what} have {self.block} designs each"
+            found = f"{blocks}" if not rest else f"{self.count} designs"
+            raise ModelError(problem, where="designs.count", found=found, allowed=f">= {least} {what}")
+
+    @property
+    def block(self) -> int:
+        """How many designs belong together, see `drawn`: 1 where each stands alone."""
+        return block_size(self.method, len(self.axes))
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """How the designs were chosen: method, seed and the parameters in their order."""
+        return {"method": self.method, "seed": self.seed, "parameters": list(self.axes)}
 
     def __len__(self) -> int:
         return self.count
@@ -114,6 +137,8 @@ class Designs:
     def _shares(self, start: int, stop: int) -> Array:
         if self.method == "latin_hypercube":
             return self._hypercube[start:stop]
+        if self.method in BLOCKS:
+            return self._blocks[start:stop]
         points = qmc.Sobol(len(self.axes), scramble=True, seed=self.seed)
         first = points.random(1)  # alone: scipy warns of a first stretch that is no power of two
         if start == 0:
@@ -125,6 +150,10 @@ class Designs:
     @cached_property
     def _hypercube(self) -> Array:
         return hypercube(self.count, len(self.axes), self.seed)
+
+    @cached_property
+    def _blocks(self) -> Array:
+        return drawn(self.method, self.count // self.block, len(self.axes), self.seed)
 
 
 def hypercube(count: int, parameters: int, seed: int) -> Array:
@@ -155,11 +184,14 @@ def table(columns: Mapping[str, Sequence[Any]]) -> Designs:
 def sampled(method: str, ends: Mapping[str, Any], count: int, seed: int = 0) -> Designs:
     """``count`` designs of a "latin_hypercube" or of "sobol" points; ends (low, high), or an `Axis`, by parameter.
 
+    By "morris" ``count`` is the number of trajectories, each of one design more than there are parameters, and by
+    "saltelli" that of base points, each of two more: what `sensitivities` asks for.
+
     >>> len(sampled("sobol", {"inertia": (0.5, 2.0), "clutch": Axis(("soft", "stiff"))}, 8))
     8
     """
     axes = {name: end if isinstance(end, Axis) else _ends(name, end) for name, end in ends.items()}
-    return Designs(axes, count, method, seed)
+    return Designs(axes, count * block_size(method, len(axes)), method, seed)
 
 
 def _levels(name: str, values: Sequence[Any]) -> Axis:

@@ -21,7 +21,7 @@ from torsional.files.reader import read_tree
 from torsional.files.scaling import read_document, values_at
 from torsional.files.scenario import load_scenario
 from torsional.files.scenario_schema import KINDS
-from torsional.files.schema.fields import Block, only_version
+from torsional.files.schema.fields import Block, Quantity, only_version
 from torsional.model import Model
 from torsional.studies.sweeps.analyses import ClaimsRun, TransientRun
 from torsional.studies.sweeps.criteria import CriteriaRun, Question
@@ -32,6 +32,7 @@ from torsional.tables import cells, named, numbers
 from torsional.units import quoted
 
 VERSION, KEY = 1, "torsional_sweep"
+Share = Annotated[float, Quantity("ratio", above=0)]
 MANY = 10_000_000
 
 
@@ -42,19 +43,23 @@ def _version(value: object) -> object:
 class Choice(Block):
     """How designs are chosen."""
 
-    method: Literal["grid", "latin_hypercube", "sobol", "table"] = "grid"
-    count: Annotated[int, Field(ge=1, le=MANY)] | None = Field(None, description="of hypercubes and Sobol points")
+    method: Literal["grid", "latin_hypercube", "sobol", "morris", "saltelli", "table"] = "grid"
+    count: Annotated[int, Field(ge=1, le=MANY)] | None = Field(
+        None, description="of hypercubes and Sobol points, of Morris's trajectories, of Saltelli's base points"
+    )
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     file: str = Field("", description="of a table: CSV with key paths as header, beside the plan")
 
 
 class Parameter(Block):
-    """What one key path of the model may be: ``values``, or all from ``low`` to ``high``."""
+    """What one key path of the model may be: ``values``, all from ``low`` to ``high``, or the model's own value and as
+    much to either side as ``tolerance`` says."""
 
     parameter: str = Field(description="key path of the model file, as clutch.stiffness")
     values: list[Any] | None = None
     low: float | int | str | None = None
     high: float | int | str | None = None
+    tolerance: Share | None = Field(None, description="share of the model's own value, as 10 %")
     points: Annotated[int, Field(ge=2, le=1_000_000)] | None = Field(None, description="of a grid")
     spacing: Literal["even", "logarithmic"] = "even"
 
@@ -131,14 +136,11 @@ def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
 def _axis(given: Parameter, where: str, model: Model, method: str) -> Axis:
     path = given.parameter
     if given.values is not None:
-        if given.low is not None or given.high is not None:
+        if not (given.low is None and given.high is None and given.tolerance is None):
             raise ModelError("a parameter has values or ends, not both", where=where, found=quoted(path))
         _refuse_unknown(path, given.values, model, f"{where}.values")
         return Axis(tuple(_in_si(path, value, model) for value in given.values))
-    if given.low is None or given.high is None:
-        allowed = "values: [...], or low and high"
-        raise ModelError("a parameter needs values or ends", where=where, found=quoted(path), allowed=allowed)
-    low, high = (_number(path, getattr(given, end), model, f"{where}.{end}") for end in ("low", "high"))
+    low, high = _ends(given, where, model)
     try:
         axis = Axis(low=low, high=high, log=given.spacing == "logarithmic")
     except ModelError as error:
@@ -148,6 +150,37 @@ def _axis(given: Parameter, where: str, model: Model, method: str) -> Axis:
     if given.points is None:
         raise ModelError("the key 'points' is missing", where=where, allowed="how many values of a grid")
     return Axis(tuple(np.asarray(axis.at(np.linspace(0.0, 1.0, given.points))).tolist()))
+
+
+def _ends(given: Parameter, where: str, model: Model) -> tuple[float, float]:
+    """The ends of a range in SI, as they are given or about the model's own value; both tried on the model."""
+    path, told = given.parameter, [given.low, given.high]
+    if given.tolerance is not None:
+        if told != [None, None]:
+            raise ModelError("a parameter has ends or a tolerance, not both", where=where, found=quoted(path))
+        if given.tolerance >= 1:
+            found, allowed = f"{given.tolerance:g}", "a share below 1, as 0.1 or 10 %"
+            raise ModelError("the tolerance is too large", where=f"{where}.tolerance", found=found, allowed=allowed)
+        own = _own(path, model, where)
+        told = [*sorted((own * (1.0 - given.tolerance), own * (1.0 + given.tolerance)))]
+    if None in told:
+        allowed = "values: [...], low and high, or tolerance"
+        raise ModelError("a parameter needs values or ends", where=where, found=quoted(path), allowed=allowed)
+    places = [f"{where}.{end}" if given.tolerance is None else f"{where}.tolerance" for end in ("low", "high")]
+    low, high = (_number(path, value, model, place) for value, place in zip(told, places, strict=True))
+    return low, high
+
+
+def _own(path: str, model: Model, where: str) -> float:
+    """The model's own value in SI; a ModelError where it has none, several, or 0."""
+    found = values_at(read_document(copy.deepcopy(dict(model.document))), path)
+    if not found:  # misspelt, perhaps
+        _number(path, 1.0, model, f"{where}.parameter")
+    own = next(iter(found.values()), 0.0)
+    if len(found) != 1 or own == 0:
+        problem = "a tolerance is about one value that the model file gives, other than 0"
+        raise ModelError(problem, where=f"{where}.parameter", found=quoted(path), remedy="give low and high")
+    return own
 
 
 def _refuse_unknown(path: str, values: list[Any], model: Model, where: str) -> None:
