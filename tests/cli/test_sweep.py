@@ -63,7 +63,7 @@ def test_a_bad_plan_leaves_no_folder(torsional: Run, tmp_path: Path) -> None:
 def test_ctrl_c_keeps_what_was_worked_out(tmp_path: Path) -> None:
     path = planned(tmp_path, "{analysis: map, torques: 13}")
     text = path.read_text(encoding="utf-8").replace("points: 3", "points: 400")
-    path.write_text(text.replace("processes: 1", "processes: 2"), encoding="utf-8")
+    path.write_text(text.replace("count: 1", "count: 2"), encoding="utf-8")
     command = subprocess.Popen(
         [sys.executable, "-m", "torsional", "sweep", str(path)],
         cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
@@ -97,7 +97,7 @@ def failing(folder: Path, count: int, processes: int = 1) -> Path:
     path.write_text(
         f"torsional_sweep: 1\nmodel: {ROOT / 'src' / 'torsional' / 'data' / 'line.yaml'}\n"
         "designs: {method: table, file: designs.csv}\nrun: {analysis: modes, count: 2}\n"
-        f"processes: {processes}\n", encoding="utf-8",
+        f"workers: {{kind: processes, count: {processes}}}\n", encoding="utf-8",
     )  # fmt: skip
     return path
 

@@ -53,7 +53,8 @@ def made(inertia: float, fail: float = 0.0) -> Model:
 
 def same(one: xr.Dataset, other: xr.Dataset) -> bool:
     """To the last bit, names and attributes too."""
-    bits = all(one[name].values.tobytes() == other[name].values.tobytes() for name in one.variables)
+    numbers = [name for name, values in one.variables.items() if values.dtype.kind != "O"]  # texts have addresses
+    bits = all(one[name].values.tobytes() == other[name].values.tobytes() for name in numbers)
     return bits and one.identical(other)
 
 

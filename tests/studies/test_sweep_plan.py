@@ -15,6 +15,7 @@ from torsional.quantities import acceleration, swing
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.sweeps.plan import load_plan
 from torsional.studies.sweeps.sweep import sweep
+from torsional.studies.sweeps.workers import Processes
 
 ROOT = Path(__file__).parents[2]
 TRUCK = ROOT / "examples" / "truck_dmf.yaml"
@@ -26,7 +27,7 @@ over:
   - {{parameter: absorber.primary_inertia, values: [1.0, "1.4 kgm²"]}}
 run: {run}
 chunk: 4
-processes: 1
+workers: {{kind: processes, count: 1}}
 """
 MODES = "{analysis: modes, count: 3}"
 
@@ -51,7 +52,7 @@ def test_values_are_read_with_their_units(tmp_path: Path) -> None:
     plan = load_plan(planned(tmp_path))
     axes = {name: axis.levels for name, axis in plan.work.designs.axes.items()}
     assert axes == {"clutch.stiffness": (15e3, 25e3, 35e3), "absorber.primary_inertia": (1.0, 1.4)}
-    assert (plan.name, plan.chunk, plan.processes) == ("plan", 4, 1)
+    assert (plan.name, plan.chunk, plan.workers) == ("plan", 4, Processes(kind="processes", count=1))
 
 
 def test_modes_are_those_of_each_model(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import xarray as xr
 from torsional.cli.answers import Answer, deliver
 from torsional.cli.jobs import RESULTS
 from torsional.cli.outputs import checked
-from torsional.cli.sweep import asked_of, tell_failures, worked_through
+from torsional.cli.sweep import asked_of, chosen_workers, tell_failures, worked_through
 from torsional.cli.tables import Column, Table
 from torsional.studies.sweeps.bands import NOMINAL, bands
 
@@ -27,13 +27,15 @@ def run(
     folder: Path | None,
     resume: bool,
     processes: int,
+    cluster: str,
     as_json: bool,
     output: Sequence[Path] | None,
     quiet: bool,
 ) -> None:
     """Answer the command."""
     outputs = checked(output, RESULTS, [plan])
-    asked, at, found = worked_through(plan, folder, resume, processes, quiet or as_json)
+    workers = chosen_workers(processes, cluster)
+    asked, at, found = worked_through(plan, folder, resume, workers, quiet or as_json)
     told, request = asked_of(asked, at, found, outputs, as_json, quiet)
     data = bands(found.whole(), asked.work.run(request.model))
     deliver(Answer("bands", tables_of(data), told, data, picture=lambda: _picture(data)), request)

@@ -221,6 +221,10 @@ Processes = Annotated[
     typer.Option("--processes", metavar="N", min=0, help="Processes side by side; 0: one a core.", show_default=False),
 ]
 
+Cluster = Annotated[
+    str, _taking("--cluster", metavar="ADDRESS", help="Dask scheduler whose workers do it, as tcp://host:8786.")
+]
+
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="Plan of a sweep (YAML or JSON).", show_default=False)]
 Folder = Annotated[
     Path | None,

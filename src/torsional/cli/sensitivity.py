@@ -13,7 +13,7 @@ from torsional.cli.answers import Answer, deliver
 from torsional.cli.failures import complain
 from torsional.cli.jobs import RESULTS
 from torsional.cli.outputs import checked
-from torsional.cli.sweep import asked_of, tell_failures, worked_through
+from torsional.cli.sweep import asked_of, chosen_workers, tell_failures, worked_through
 from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
 from torsional.studies.sweeps.blocks import BLOCKS
@@ -45,13 +45,15 @@ def run(
     folder: Path | None,
     resume: bool,
     processes: int,
+    cluster: str,
     as_json: bool,
     output: Sequence[Path] | None,
     quiet: bool,
 ) -> None:
     """Answer the command."""
     outputs = checked(output, RESULTS, [plan])
-    asked, at, found = worked_through(plan, folder, resume, processes, quiet or as_json, _fitting)
+    workers = chosen_workers(processes, cluster)
+    asked, at, found = worked_through(plan, folder, resume, workers, quiet or as_json, _fitting)
     data = sensitivities(found.whole(), figure or None)
     if not quiet:
         _tell_dropped(data)

@@ -26,6 +26,7 @@ from torsional.studies.sweeps.standing import standing
 from torsional.studies.sweeps.store import CHUNKS, plan_in
 from torsional.studies.sweeps.sweep import Pieces
 from torsional.studies.sweeps.work import OK
+from torsional.studies.sweeps.workers import Dask, Processes, Settings, scheduler_address
 from torsional.units import show
 
 SUFFIXES = (".nc", ".csv", ".json")
@@ -41,6 +42,7 @@ def run(
     resume: bool,
     status: bool,
     processes: int,
+    cluster: str,
     as_json: bool,
     output: Sequence[Path] | None,
     quiet: bool,
@@ -52,7 +54,7 @@ def run(
     outputs = checked(output, SUFFIXES, [plan])
     if not resume:
         _refuse_begun(folder or folder_of(plan))
-    asked, at, found = worked_through(plan, folder, True, processes, quiet or as_json)
+    asked, at, found = worked_through(plan, folder, True, chosen_workers(processes, cluster), quiet or as_json)
     _deliver(found, asked, at, outputs, as_json, quiet)
 
 
@@ -65,11 +67,13 @@ def worked_through(
     path: Path,
     folder: Path | None,
     resume: bool,
-    processes: int,
+    workers: Settings | None,
     silent: bool,
     fitting: Callable[[Plan], None] = lambda plan: None,
 ) -> tuple[Plan, Path, Collected]:
     """A plan, the folder of its pieces, and what all its designs answered; ``fitting`` refuses plans before any work.
+
+    ``workers``: None for those of the plan.
 
     Raises ModelError for a folder that holds pieces, unless its sweep is gone on with or needs no more work.
     """
@@ -78,8 +82,20 @@ def worked_through(
     pieces = Pieces.of(asked.work, at, asked.chunk)
     if not resume and pieces.store.missing(pieces.count):
         _refuse_begun(at)
-    _worked(pieces, asked, processes, silent)
+    _worked(pieces, asked, workers or asked.workers, silent)
     return asked, at, pieces.collected()
+
+
+def chosen_workers(processes: int, cluster: str) -> Settings | None:
+    """Who works, where the command says it; else the plan does."""
+    if not cluster:
+        return Processes(kind="processes", count=processes) if processes else None
+    if processes:
+        raise ModelError("there are processes here or a cluster, not both", where="--cluster", found=repr(cluster))
+    try:
+        return Dask(kind="dask", address=scheduler_address(cluster))
+    except ModelError as error:
+        raise error.located(prefix="--cluster") from None
 
 
 def _refuse_begun(folder: Path) -> None:
@@ -113,10 +129,10 @@ def _bytes(size: int) -> str:
     return f"{size} bytes"
 
 
-def _worked(pieces: Pieces, asked: Plan, processes: int, silent: bool) -> None:
+def _worked(pieces: Pieces, asked: Plan, workers: Settings, silent: bool) -> None:
     try:
         with counting(asked.name, "designs", silent) as moved:
-            pieces.worked(processes or asked.processes, moved)
+            pieces.worked(workers, moved)
     except KeyboardInterrupt:
         taken()
         left = sum(map(pieces.length, pieces.store.missing(pieces.count)))

@@ -28,10 +28,12 @@ _MARK: Any = None
 
 @dataclass(frozen=True)
 class Lost:
-    """A task whose process died: the ``mark`` it had set last, `NOWHERE` if none, and its exit ``code``."""
+    """A task whose process died: the ``mark`` it had set last, `NOWHERE` if none, its exit ``code`` (None: not known),
+    and how many ``times`` that happened."""
 
     mark: int
     code: int | None
+    times: int = 1
 
 
 class _Member(Generic[Task]):
@@ -44,7 +46,7 @@ class _Member(Generic[Task]):
         self.process: SpawnProcess = context.Process(
             target=_working, args=(theirs, self.mark, work, prepare, given), daemon=True
         )
-        with _inherited():
+        with inherited():
             self.process.start()
         theirs.close()
         self.task: Task | None = None
@@ -179,7 +181,7 @@ def _working(
 
 
 @contextmanager
-def _inherited() -> Iterator[None]:
+def inherited() -> Iterator[None]:
     """What processes that are started within it inherit: one thread each, and no ear for Ctrl-C."""
     before = {key: os.environ.get(key) for key in ONE_THREAD}
     heard = signal.getsignal(signal.SIGINT) if threading.current_thread() is threading.main_thread() else None

@@ -28,6 +28,7 @@ from torsional.studies.sweeps.criteria import CriteriaRun, Question
 from torsional.studies.sweeps.designs import Axis, Designs, grid, sampled, table
 from torsional.studies.sweeps.sweep import CHUNK
 from torsional.studies.sweeps.work import Run, Work
+from torsional.studies.sweeps.workers import Processes, Settings
 from torsional.tables import cells, named, numbers
 from torsional.units import quoted
 
@@ -74,17 +75,19 @@ class SweepFile(Block):
     designs: Choice = Field(default_factory=lambda: Choice.model_validate({}))
     run: Question
     chunk: Annotated[int, Field(ge=1, le=100_000)] = CHUNK
-    processes: Annotated[int, Field(ge=0, le=4096)] = Field(0, description="side by side; 0: one a core")
+    workers: Settings = Field(
+        default_factory=lambda: Processes(kind="processes", count=0), description="who works on it"
+    )
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep as its file asks for it: the ``work``, designs a ``chunk``, ``processes`` (None: one a processor)."""
+    """A sweep as its file asks for it: the ``work``, designs a ``chunk``, the ``workers``."""
 
     name: str
     work: Work
     chunk: int
-    processes: int | None
+    workers: Settings
 
 
 @checked
@@ -110,7 +113,7 @@ def load_plan(path: str | os.PathLike[str]) -> Plan:
             raise
         told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
         raise ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told) from None
-    return Plan(file.name or Path(path).stem, Work(model, designs, run), file.chunk, file.processes or None)
+    return Plan(file.name or Path(path).stem, Work(model, designs, run), file.chunk, file.workers)
 
 
 def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:

@@ -120,7 +120,11 @@ class Store:
 
     def put(self, number: int, arrays: Mapping[str, np.ndarray]) -> None:
         """Keep a chunk; raises OSError where the disk is full, and leaves nothing half-written under its name."""
-        written(self.path(number), packed(arrays))
+        self.keep(number, packed(arrays))
+
+    def keep(self, number: int, data: bytes) -> None:
+        """Keep a chunk that was `packed` elsewhere."""
+        written(self.path(number), data)
 
     def get(self, number: int) -> dict[str, np.ndarray] | None:
         """A chunk; None where it is not there or not whole."""
