@@ -26,7 +26,7 @@ over:
 designs: {{method: {method}}}
 run: {run}
 chunk: 6
-workers: {kind: processes, count: 1}
+workers: {{kind: processes, count: 1}}
 """
 MODES = "{analysis: modes, count: 1}"
 
