@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from torsional.errors import ModelError
 from torsional.laws import Hinges
+from torsional.laws.hinges import hinge_tangents
 
 TWO_STAGE = Hinges.staged([(1000.0, 8e3), (3500.0, 24e3)], lash=0.02, stop_stiffness=1e6)
 
@@ -85,3 +86,14 @@ def test_negative_slope_and_uncarried_torque_refused() -> None:
         Hinges(1e3, (0.1,), (1.0,), (-2e3,))
     with pytest.raises(ModelError, match="no angle carries"):
         Hinges(0.0, (0.1,), (1.0,), (1e3,)).angle(-5.0)
+
+
+@given(seed=st.integers(0, 10_000))
+def test_tangents_of_many_laws_are_those_of_each(seed: int) -> None:
+    """At torques inside, on corners, in free ranges and beyond."""
+    random = np.random.default_rng(seed)
+    lash, stiff = float(random.choice([0.0, 0.02])), random.uniform(1e3, 1e4, (5, 2))
+    laws = [Hinges.staged([(300.0, a), (900.0, b)], lash=lash, stop_stiffness=1e6) for a, b in stiff]
+    torque = np.array([0.0, 300.0, 900.0, -300.0, 1e-9, 1200.0, *random.uniform(-1500.0, 1500.0, 9)])
+    found = hinge_tangents(np.array([law.parameters for law in laws]), torque)
+    np.testing.assert_array_equal(found, [law.tangent(law.angle(torque)) for law in laws])

@@ -38,9 +38,8 @@ def hinge_angles(parameters: Array, torque: Array) -> Array:
     """Angles [rad] (laws, torques) at which laws with ``parameters`` (laws, 1 + 3 hinges) carry torques [Nm]; in a free
     range, its middle.  Raises ModelError where no angle carries one.
     """
-    gaps, sides, changes = (parameters[:, place::3] for place in (1, 2, 3))
-    edges = np.sort(np.hstack([gaps, np.zeros((len(gaps), 1))]), axis=1)
-    at = _torques(parameters, edges)
+    sides, changes = parameters[:, 2::3], parameters[:, 3::3]
+    edges, at = _corners(parameters)
     slope = [parameters[:, 0] + np.where(sides == side, changes, 0.0).sum(axis=1) for side in (-1.0, 1.0)]
     low, high = ((slope[end] <= 0)[:, None] for end in (0, 1))
     beyond = low & (torque < at[:, :1]) | high & (torque > at[:, -1:])
@@ -59,12 +58,34 @@ def hinge_angles(parameters: Array, torque: Array) -> Array:
     return np.where(right > left, middle, inside)
 
 
+def hinge_tangents(parameters: Array, torque: Array) -> Array:
+    """Tangent stiffnesses [Nm/rad] (laws, torques) of such laws where they carry torques [Nm]."""
+    edges, at = _corners(parameters)
+    outer = edges[:, :1] - 1.0, edges[:, -1:] + 1.0
+    slopes = hinge_slopes(parameters, np.hstack([outer[0], 0.5 * (edges[:, 1:] + edges[:, :-1]), outer[1]]))
+    passed, met = np.zeros((len(at), torque.size), dtype=np.intp), np.zeros((len(at), torque.size), dtype=bool)
+    for corner in at.T:
+        passed += corner[:, None] < torque
+        met |= abs(corner[:, None] - torque) <= 1e-12 * abs(torque)
+    found = _taken(slopes, passed)
+    for place in np.flatnonzero(met.any(axis=0)):  # what rounding makes of a corner, as one law tells it
+        rows = parameters[met[:, place]]
+        found[met[:, place], place] = hinge_slopes(rows, hinge_angles(rows, torque[place : place + 1]))[:, 0]
+    return found
+
+
 def hinge_slopes(parameters: Array, angle: Array) -> Array:
     """Tangent stiffnesses [Nm/rad] (laws, angles) of such laws at angles [rad] (laws, angles)."""
     slopes = np.broadcast_to(parameters[:, :1], angle.shape).copy()
     for gap, side, change in (parameters[:, i : i + 3].T for i in range(1, parameters.shape[1], 3)):
         slopes += np.where(depth(angle, 0.0, gap[:, None], side[:, None], 0.0) > 0.0, change[:, None], 0.0)
     return slopes
+
+
+def _corners(parameters: Array) -> tuple[Array, Array]:
+    """Angles (laws, hinges + 1) at which slopes change, and zero, from left to right, with their torques."""
+    edges = np.sort(np.hstack([parameters[:, 1::3], np.zeros((len(parameters), 1))]), axis=1)
+    return edges, _torques(parameters, edges)
 
 
 def _torques(parameters: Array, angle: Array) -> Array:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from torsional.laws import Hinges
-from torsional.laws.hinges import hinge_angles, hinge_slopes
+from torsional.laws.hinges import hinge_tangents
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.numerics.elimination.coupling import CoupledPlan, Rest
 from torsional.numerics.elimination.plan import Status
@@ -98,19 +98,22 @@ class Variants:
         slopes = {i: self._slopes(i, rows) for i, rows in laws.items()}
         count = max(len(table) for table in (*numbers.values(), *slopes.values()))
         shape = self.loading.omega.shape
-        q = np.empty((count, self._places.size, *shape), dtype=complex)
-        for states in self._alike(slopes):
-            stiffness = np.repeat(numbers["stiffness"], count // len(numbers["stiffness"]), axis=0)
+        groups = self._alike(slopes)
+        q = np.empty((count if len(groups) > 1 else 0, self._places.size, *shape), dtype=complex)
+        stiffness = np.repeat(numbers["stiffness"], count // len(numbers["stiffness"]), axis=0)
+        for states in groups:
             for i, slope in slopes.items():
                 stiffness[:, i] = slope[:, states[0]]
             cases = (states[:, None] * shape[1] + np.arange(shape[1])).ravel()
-            part = self._solved(cases, {**numbers, "stiffness": stiffness})
-            q[:, :, states] = part.reshape(count, -1, len(states), shape[1])
+            part = self._solved(cases, {**numbers, "stiffness": stiffness}).reshape(count, -1, len(states), shape[1])
+            if len(groups) == 1:
+                return _combined(self.outputs[:, self._places], part)
+            q[:, :, states] = part
         return _combined(self.outputs[:, self._places], q)
 
     def _slopes(self, connection: int, parameters: Array) -> Array:
         """Tangent stiffnesses (variants, states) of a law at the mean torques."""
-        return hinge_slopes(parameters, hinge_angles(parameters, self.loading.state.torque[:, connection]))
+        return hinge_tangents(parameters, self.loading.state.torque[:, connection])
 
     def _alike(self, slopes: Mapping[int, Array]) -> list[IntArray]:
         """Groups of states in which every variant has its one stiffness."""
