@@ -122,6 +122,11 @@ def test_few_designs_are_not_worth_it() -> None:
     assert Work(model("truck_dmf"), designs, RESPONSE)._batch is None
 
 
+def test_an_array_library_answers_alike() -> None:
+    truck, designs = model("truck_dmf"), sampled("sobol", OVER, MANY, seed=3)
+    assert_alike(together(truck, designs, TWO.model_copy(update={"backend": "numpy"})), together(truck, designs, TWO))
+
+
 def test_what_is_refused_for_all_is_told_of_each() -> None:
     """Speeds that the full-load curve does not reach."""
     run = RESPONSE.model_copy(update={"speed": (20.0, 40.0, 5.0)})

@@ -11,6 +11,7 @@ import numpy as np
 from torsional.laws import Hinges
 from torsional.laws.hinges import hinge_tangents
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.numerics.elimination.backends import backend
 from torsional.numerics.elimination.coupling import CoupledPlan, Rest
 from torsional.numerics.elimination.plan import Status
 from torsional.solvers.equilibrium import OperatingPoint, with_load_stiffness
@@ -38,7 +39,7 @@ class Variants:
 
     ``outputs``: combinations of the coordinates that are wanted, (outputs, coordinates), as rows of ``System.T`` for
     nodes or weights for twists.  Varied laws must be `Hinges`, and statics alone must fix the mean torques: `possible`
-    tells.
+    tells.  ``backend``: an array library instead of the compiled kernel, see `numerics.elimination.backends`.
     """
 
     system: System
@@ -46,6 +47,7 @@ class Variants:
     connections: IntArray
     masses: IntArray
     outputs: Array
+    backend: str = ""
 
     @cached_property
     def possible(self) -> bool:
@@ -130,7 +132,12 @@ class Variants:
         """Coordinates (variants, places, cases); where the short way is not to be trusted, by the whole system."""
         plan = self._plan
         k, eta, c, lift = (numbers[name][:, plan.connections] for name in NUMBERS)
-        q, flagged = plan.solve(self._rest.at(cases), (k, eta, c, lift), numbers["inertia"][:, plan.masses])
+        rest, inertia = self._rest.at(cases), numbers["inertia"][:, plan.masses]
+        if self.backend:
+            q, flagged = backend(self.backend).solve(plan, rest, (k, eta, c, lift), inertia)
+            q = np.array(q)  # to be written to
+        else:
+            q, flagged = plan.solve(rest, (k, eta, c, lift), inertia)
         for variant, place in np.argwhere(flagged):
             own = {name: table[variant if len(table) > 1 else 0] for name, table in numbers.items()}
             q[variant, :, place] = self._whole(int(cases[place]), own)

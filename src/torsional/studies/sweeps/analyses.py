@@ -14,6 +14,7 @@ from torsional.files.scenario_blocks import GearName, Scenario
 from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, Whole
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.elimination.backends import backend
 from torsional.quantities import acceleration, order_speed, swing
 from torsional.results import labelled
 from torsional.solvers.map import response_map
@@ -50,6 +51,9 @@ class Linear(Asking):
     speed: SpeedRange | None = Field(None, description="default: the operating range in 57 points")
     orders: list[Order] = Field(default_factory=list, description="default: the main order")
     node: Node = Field("", description="default: the one to be kept quiet")
+    backend: Literal["", "numpy", "jax", "cupy"] = Field(
+        "", description="array library that asks many designs together, as on a GPU; default: the compiled kernel"
+    )
 
     def speeds(self, model: Model) -> Array:
         """The speeds [rad/s] asked."""
@@ -67,7 +71,9 @@ class Linear(Asking):
         return [model.gear_name(self.gear or None)]
 
     def possible(self, batch: Batch) -> bool:
-        """Whether designs can be asked together."""
+        """Whether designs can be asked together; raises ModelError where the array library is not there."""
+        if self.backend:
+            backend(self.backend)
         return all(batch.answers(gear) for gear in self.gears_asked(batch.model))
 
     def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
@@ -133,7 +139,8 @@ class ResponseRun(Linear):
         model = batch.model
         speeds, orders, (gear,) = self.speeds(model), self.asked_orders(model), self.gears_asked(model)
         mean = model.full_load(speeds) if self.torque is None else np.full(speeds.size, self.torque)
-        angles = batch.angles(gear, Asked(speeds, mean, orders, (self.place(model),), grid=False), columns)[:, 0]
+        asked = Asked(speeds, mean, orders, (self.place(model),), False, self.backend)
+        angles = batch.angles(gear, asked, columns)[:, 0]
         return self._told(("design", "speed", "order"), size(angles) * np.outer(speeds, orders) ** 2, speeds, orders)
 
     @staticmethod
@@ -166,7 +173,7 @@ class MapRun(Linear):
         """The same of many designs."""
         model = batch.model
         speeds, torques, orders = self.speeds(model), model.torques(self.torques), self.asked_orders(model)
-        names, asked = self.gears_asked(model), Asked(speeds, torques, orders, (self.place(model),), grid=True)
+        names, asked = self.gears_asked(model), Asked(speeds, torques, orders, (self.place(model),), True, self.backend)
         cells = torques.size * speeds.size
         half = np.empty((len(next(iter(columns.values()))), len(names), cells))
         for number, gear in enumerate(names):

@@ -93,7 +93,7 @@ class Batch:
         system = self._system(gear)
         connections = _touched(fields, laws)
         outputs = np.array([system.T[system.node_index(node)] for node in asked.nodes])
-        return Variants(system, asked.loading(self.model, system), connections, masses, outputs)
+        return Variants(system, asked.loading(self.model, system), connections, masses, outputs, asked.backend)
 
     def _system(self, gear: str) -> System:
         return self._gear(gear)[0]
@@ -147,7 +147,7 @@ class Asked:
     """Speeds, mean torques and orders of an analysis, and the ``nodes`` wanted.
 
     ``grid``: every torque at every speed, the torques being the states and speeds × orders the frequencies; else a
-    torque a speed, both being the states.
+    torque a speed, both being the states.  ``backend``: see `Variants`.
     """
 
     speeds: Array
@@ -155,11 +155,12 @@ class Asked:
     orders: Array
     nodes: tuple[str, ...]
     grid: bool
+    backend: str = ""
 
     @property
     def key(self) -> tuple[Any, ...]:
         """What tells it from others."""
-        return self.speeds.tobytes(), self.torques.tobytes(), self.orders.tobytes(), self.nodes, self.grid
+        return self.speeds.tobytes(), self.torques.tobytes(), self.orders.tobytes(), self.nodes, self.grid, self.backend
 
     def loading(self, model: Model, system: System) -> Loading:
         """The same for one system of the model."""
