@@ -13,6 +13,10 @@ from tests.studies.test_sweep_plan import ROOT
 
 import torsional as tv
 from torsional.cli.progress import Pace
+from torsional.errors import ModelError
+from torsional.studies.sweeps import sensitivities, sweep
+from torsional.studies.sweeps.analyses import ModesRun
+from torsional.studies.sweeps.plan import load_plan
 
 Run = Callable[..., Any]
 LINE = ROOT / "src" / "torsional" / "data" / "line.yaml"
@@ -52,6 +56,9 @@ def test_sensitivities_are_told_by_importance(torsional: Run, tmp_path: Path) ->
     document = json.loads(again.out)
     assert document["result"]["variables"]["total"]["values"][1] == kept.total.values[0].tolist()
     assert document["designs"]["ok"] == 64 and document["plan"] == "rotor and shaft"
+    work = load_plan(path).work
+    beside = sensitivities(sweep(work.build, work.designs, work.run), ["frequency"])
+    assert beside.total.values.tobytes() == kept.total.values.tobytes()
 
 
 def test_effects_in_units_and_a_picture(torsional: Run, tmp_path: Path) -> None:
@@ -100,6 +107,21 @@ def test_bands_beside_the_nominal_curve(torsional: Run, tmp_path: Path) -> None:
     low, high = kept.acceleration.sel(percentile=5.0), kept.acceleration.sel(percentile=95.0)
     inside = (low <= kept.acceleration_nominal) & (kept.acceleration_nominal <= high)
     assert float(inside.mean()) > 0.9 and kept.acceleration.attrs["amplitude"] == "0-peak"
+
+
+def test_bands_where_the_unchanged_model_has_no_answer(
+    torsional: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nominal, asked = tv.load_model(LINE).hash, ModesRun.__call__
+
+    def refusing(self: ModesRun, model: tv.Model) -> Any:
+        if model.hash == nominal:
+            raise ModelError("not this one")
+        return asked(self, model)
+
+    monkeypatch.setattr(ModesRun, "__call__", refusing)
+    told = torsional("bands", planned(tmp_path, "latin_hypercube, count: 20"))
+    assert told.code == 0 and "bands stand alone: not this one" in told.err and "nominal" not in told.out
 
 
 def test_bands_of_single_figures(torsional: Run, tmp_path: Path) -> None:

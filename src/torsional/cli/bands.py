@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from torsional.cli.answers import Answer, deliver
+from torsional.cli.failures import complain
 from torsional.cli.jobs import RESULTS
 from torsional.cli.outputs import checked
 from torsional.cli.sweep import asked_of, chosen_workers, tell_failures, worked_through
 from torsional.cli.tables import Column, Table
+from torsional.errors import ModelError
+from torsional.model import Model
 from torsional.studies.sweeps.bands import NOMINAL, bands
+from torsional.studies.sweeps.plan import Plan
+from torsional.studies.sweeps.work import Answer as Answered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,9 +42,18 @@ def run(
     workers = chosen_workers(processes, cluster)
     asked, at, found = worked_through(plan, folder, resume, workers, quiet or as_json)
     told, request = asked_of(asked, at, found, outputs, as_json, quiet)
-    data = bands(found.whole(), asked.work.run(request.model))
+    data = bands(found.whole(), _nominal(asked, request.model))
     deliver(Answer("bands", tables_of(data), told, data, picture=lambda: _picture(data)), request)
     tell_failures(found)
+
+
+def _nominal(plan: Plan, model: Model) -> Answered | None:
+    """The answer of the unchanged model; None, with a warning, where it has none."""
+    try:
+        return plan.work.run(model)
+    except ModelError as error:
+        complain(f"the unchanged model has no answer, and bands stand alone: {error}", kind="warning")
+        return None
 
 
 def tables_of(data: xr.Dataset) -> list[Table]:

@@ -49,7 +49,7 @@ class EnvelopeRun(Asking):
         ways = spring_ways(model)
         bench = Bench(model, loads=self.loads, orders=self.orders, stops=ways, gears=self.gears, speed=self._at(model))
         found, twist, loss = bench.answers()
-        return labelled(
+        data = labelled(
             {
                 "acceleration_swing": (
                     ("gear", "speed"),
@@ -67,6 +67,8 @@ class EnvelopeRun(Asking):
             },
             analysis="envelope",
         )
+        data.acceleration_swing.attrs["amplitude"] = "half peak-to-peak"
+        return data
 
     def _at(self, model: Model) -> Array:
         if self.speed is None:

@@ -196,7 +196,7 @@ class MapRun(Linear):
         most = np.take_along_axis(half, at[..., None], axis=-1)[..., 0]
         row, column = np.unravel_index(at, (torques.size, speeds.size))
         dims = (*front, "gear")
-        return labelled(
+        data = labelled(
             {
                 "acceleration_swing": (dims, most, "acceleration"),
                 "worst_speed": (dims, speeds[column], "speed"),
@@ -205,6 +205,8 @@ class MapRun(Linear):
             {"gear": (np.array(self.gears_asked(model)), "")},
             analysis="map",
         )
+        data.acceleration_swing.attrs["amplitude"] = "half peak-to-peak"
+        return data
 
 
 class TransientRun(Asking):
