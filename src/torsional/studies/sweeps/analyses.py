@@ -44,12 +44,11 @@ class Asking(Block):
         return self.model_dump(mode="json")
 
 
-class Linear(Asking):
-    """What the linear analyses share: where, under which load, over which speeds."""
+class OverSpeed(Asking):
+    """What analyses over speed share: which speeds, in which gear, where."""
 
     gear: GearName = Field("", description="engaged; default: the last listed")
     speed: SpeedRange | None = Field(None, description="default: the operating range in 57 points")
-    orders: list[Order] = Field(default_factory=list, description="default: the main order")
     node: Node = Field("", description="default: the one to be kept quiet")
     backend: Literal["", "numpy", "jax", "cupy"] = Field(
         "", description="array library that asks many designs together, as on a GPU; default: the compiled kernel"
@@ -61,6 +60,19 @@ class Linear(Asking):
             return model.speeds(POINTS)
         low, high, *step = self.speed
         return np.arange(low, high + 1e-9 * high, step[0]) if step else np.linspace(low, high, POINTS)
+
+    def place(self, model: Model) -> str:
+        """The node asked."""
+        place = self.node or model.landmarks.input
+        if not place:
+            raise ModelError("the model names no node to be kept quiet", where="run.node", remedy="name one")
+        return place
+
+
+class Linear(OverSpeed):
+    """What the linear analyses share beyond that: orders, and designs that are asked together."""
+
+    orders: list[Order] = Field(default_factory=list, description="default: the main order")
 
     def asked_orders(self, model: Model) -> Array:
         """The orders asked."""
@@ -79,13 +91,6 @@ class Linear(Asking):
     def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
         """Which of them."""
         return np.asarray(np.all([batch.covers(gear, columns) for gear in self.gears_asked(batch.model)], axis=0))
-
-    def place(self, model: Model) -> str:
-        """The node asked."""
-        place = self.node or model.landmarks.input
-        if not place:
-            raise ModelError("the model names no node to be kept quiet", where="run.node", remedy="name one")
-        return place
 
 
 class ModesRun(Asking):

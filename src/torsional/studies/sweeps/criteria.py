@@ -17,9 +17,10 @@ from torsional.numerics.arrays import Array
 from torsional.results import labelled
 from torsional.studies.sweeps.absorbers import EnvelopeRun, FrictionRun, InertiaRun
 from torsional.studies.sweeps.analyses import Analysis, Asking
+from torsional.studies.sweeps.periodic import PeriodicRun
 from torsional.units import quoted, read, read_range
 
-Single: TypeAlias = Analysis | EnvelopeRun | InertiaRun | FrictionRun
+Single: TypeAlias = Analysis | EnvelopeRun | InertiaRun | FrictionRun | PeriodicRun
 """One analysis."""
 WORST: Mapping[str, Callable[[Array], Any]] = {"largest": np.max, "smallest": np.min, "mean": np.mean}
 CLOSE = 1e-9

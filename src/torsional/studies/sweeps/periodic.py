@@ -1,0 +1,66 @@
+"""Branches of periodic motion for plans: what springs with stages do over speed, where their motion loses stability."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+
+from torsional.engine.orders import HIGHEST_ORDER
+from torsional.files.schema.fields import Order, Torque, Whole
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.quantities import acceleration, swing
+from torsional.quantities.branches import without_stable
+from torsional.results import labelled
+from torsional.solvers.periodic import model_response
+from torsional.studies.sweeps.analyses import OverSpeed
+
+
+class PeriodicRun(OverSpeed):
+    """The main branch of periodic motion over speed, of a model whose springs have stages."""
+
+    gives = (
+        "twist_swing", "acceleration_swing", "worst_speed", "folds", "doublings", "fold_speed", "doubling_speed",
+        "unstable_share",
+    )  # fmt: skip
+    analysis: Literal["periodic"]
+    torque: Torque | None = Field(None, description="mean; default: full load")
+    highest_order: Order = Field(HIGHEST_ORDER, description="of the harmonics")
+    count: Whole = Field(4, description="of folds, and of period doublings, whose speeds are told")
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """Half the swing, the largest over the branch, of the ``twist_swing`` of springs with stages and of a node's
+        ``acceleration_swing`` with its ``worst_speed``; how many ``folds`` and period ``doublings`` the branch has, and
+        at which speeds (none beyond); the ``unstable_share`` of the speeds, in which it has no stable motion."""
+        place, at = self.place(model), self.speeds(model)
+        data = model_response(
+            model, (at[0], at[-1]), self.torque, self.gear or None, at=at, highest_order=self.highest_order, depth=0
+        )
+        springs = json.loads(data.attrs["laws"])
+        twist = swing(data.twist.sel(element=springs))
+        shaken = swing(acceleration(data.angle.sel(node=place)))
+        values: dict[str, Any] = {
+            "twist_swing": (("element",), twist.max("point").values, "relative_angle"),
+            "acceleration_swing": ((), float(shaken.max()), "acceleration"),
+            "worst_speed": ((), float(data.speed[int(shaken.values.argmax())]), "speed"),
+            "unstable_share": ((), _unstable(data, float(at[-1] - at[0])), "ratio"),
+        }
+        for name, kind in (("fold", "fold"), ("doubling", "period doubling")):
+            speeds = np.sort(data.bifurcation_speed.values[data.bifurcation_type.values == kind])
+            values[f"{name}s"] = (), speeds.size, "number"
+            values[f"{name}_speed"] = ("bifurcation",), _padded(speeds, self.count), "speed"
+        return labelled(values, {"element": (springs, "")}, analysis="periodic")
+
+
+def _unstable(data: xr.Dataset, span: float) -> float:
+    """The share of a span of speed in which a branch has no stable motion, or was not followed to."""
+    stable = float(np.ptp(data.value.values)) - sum(high - low for low, high in without_stable(data))
+    return 1.0 - stable / span
+
+
+def _padded(values: Array, count: int) -> Array:
+    return np.append(values[:count], np.full(max(count - values.size, 0), np.nan))
