@@ -226,6 +226,35 @@ Cluster = Annotated[
 ]
 
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="Plan of a sweep (YAML or JSON).", show_default=False)]
+Optimisation = Annotated[
+    str, typer.Argument(metavar="PLAN", help="Plan of an optimisation, or the name of a preset.", show_default=False)
+]
+Space = Annotated[
+    str, _taking("--space", metavar="VALUE", help="Preset: most inertia of the absorber in kgm²; default: its own.")
+]
+Travel = Annotated[
+    str,
+    _taking("--travel", metavar="VALUE", help="Preset: most twist of its springs in rad, or 15deg; default: its stop."),
+]
+Power = Annotated[
+    str, _taking("--power", metavar="VALUE", help="Preset: most friction power at the resonance in W, or 0.5kW.")
+]
+AbsorberKind = Annotated[
+    str, _taking("--absorber", metavar="NAME", help="Preset best-clutch-friction: smf, dmf, psva …; default: the own.")
+]
+Population = Annotated[
+    int, typer.Option("--population", metavar="N", min=0, help="Designs of a generation.", show_default=False)
+]
+Generations = Annotated[
+    int, typer.Option("--generations", metavar="N", min=0, help="Generations searched.", show_default=False)
+]
+Seed = Annotated[
+    int | None, typer.Option("--seed", metavar="N", min=0, help="Of all that is drawn by chance.", show_default=False)
+]
+KeptIn = Annotated[
+    Path | None,
+    _taking("--folder", metavar="FOLDER", help="Where work is kept; default: the plan's name and .optimise."),
+]
 Folder = Annotated[
     Path | None,
     _taking("--folder", metavar="FOLDER", help="Where pieces are kept; default: the plan's name and .sweep."),

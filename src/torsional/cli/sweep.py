@@ -53,7 +53,7 @@ def run(
         return
     outputs = checked(output, SUFFIXES, [plan])
     if not resume:
-        _refuse_begun(folder or folder_of(plan))
+        refuse_begun(folder or folder_of(plan))
     asked, at, found = worked_through(plan, folder, True, chosen_workers(processes, cluster), quiet or as_json)
     _deliver(found, asked, at, outputs, as_json, quiet)
 
@@ -81,7 +81,7 @@ def worked_through(
     fitting(asked)
     pieces = Pieces.of(asked.work, at, asked.chunk)
     if not resume and pieces.store.missing(pieces.count):
-        _refuse_begun(at)
+        refuse_begun(at)
     _worked(pieces, asked, workers or asked.workers, silent)
     return asked, at, pieces.collected()
 
@@ -98,7 +98,8 @@ def chosen_workers(processes: int, cluster: str) -> Settings | None:
         raise error.located(prefix="--cluster") from None
 
 
-def _refuse_begun(folder: Path) -> None:
+def refuse_begun(folder: Path) -> None:
+    """ModelError for a folder that holds work."""
     if (folder / CHUNKS).is_dir() and any((folder / CHUNKS).iterdir()):
         remedy = "--resume goes on with it; or remove it, or name another --folder"
         raise ModelError("the folder holds pieces of a sweep", where="--folder", found=repr(str(folder)), remedy=remedy)
@@ -186,7 +187,11 @@ def _ranges(found: Collected) -> list[Table]:
 
 def tell_failures(found: Collected) -> None:
     """Say why designs have no answer, the most frequent reasons first, and end with an exit code of its own."""
-    state, reasons = found.states
+    tell_states(*found.states)
+
+
+def tell_states(state: np.ndarray, reasons: np.ndarray) -> None:
+    """The same of the status and the reason of every design."""
     failed = state != OK
     if not failed.any():
         return

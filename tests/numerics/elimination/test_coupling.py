@@ -57,9 +57,7 @@ def test_coupled_designs_respond_as_whole_ones(seed: int, loops: int, count: int
         own, bodies = np.repeat(base["k"][case : case + 1], DESIGNS, axis=0), np.repeat(inertia[None], DESIGNS, axis=0)
         own[:, plan.connections], bodies[:, plan.masses] = k[:, plan.connections], J[:, plan.masses]
         at = slice(case, case + 1)
-        x, _ = whole.solve(
-            own, eta, base["c"], lift, bodies, omega[at], speed[at], nodes, loads[at, None, :], outputs
-        )
+        x, _ = whole.solve(own, eta, base["c"], lift, bodies, omega[at], speed[at], nodes, loads[at, None, :], outputs)
         sound = ~flagged[:, case]
         scale = abs(x).max(axis=(1, 2, 3))[sound]
         assert (abs(found[sound, :, case] - x[sound, 0, 0]).max(axis=1) < 1e-10 * scale).all()

@@ -92,6 +92,51 @@ def bands(
     return job("bands", **locals())
 
 
+@app.command()
+def optimise(
+    plan: o.Optimisation,
+    model: o.StudyModel = None,
+    changes: o.Changes = None,
+    space: o.Space = "",
+    travel: o.Travel = "",
+    power: o.Power = "",
+    absorber: o.AbsorberKind = "",
+    population: o.Population = 0,
+    generations: o.Generations = 0,
+    seed: o.Seed = None,
+    folder: o.KeptIn = None,
+    resume: o.Resume = False,
+    processes: o.Processes = 0,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """The best designs of a plan, or of a preset on a truck.
+
+    A genetic search over what may be chosen, within limits, refined by exact gradients: the Pareto front of the
+    objectives, its knee, and how both compare with the nominal design.  Presets: best-dmf, best-clutch-friction,
+    best-psva, best-tva, best-pendulum.  Stopped in the middle, --resume goes on.  -o takes a page, .html, too.
+    """
+    limits = {"space": space, "travel": travel, "power": power, "absorber": absorber}
+    given = {name: value for name, value in limits.items() if value}
+    return job(
+        "optimise",
+        plan=plan,
+        model=model,
+        changes=changes,
+        given=given,
+        population=population,
+        generations=generations,
+        seed=seed,
+        folder=folder,
+        resume=resume,
+        processes=processes,
+        as_json=as_json,
+        output=output,
+        quiet=quiet,
+    )
+
+
 app.add_typer(
     typer.Typer(cls=StudyGroup, rich_markup_mode=None),
     name="study",

@@ -130,9 +130,7 @@ def solved(tape: Tape, route: Route, job: Job, loaded: tuple[int, ...], outputs:
     return Response(x.transpose(0, 3, 1, 2), status)
 
 
-def eliminated(
-    tape: Tape, route: Route, job: Job, outputs: int
-) -> tuple[ComplexArray, NDArray[np.bool_], int]:
+def eliminated(tape: Tape, route: Route, job: Job, outputs: int) -> tuple[ComplexArray, NDArray[np.bool_], int]:
     """Run the kernel over batches of designs: x (designs, right-hand sides, outputs, frequencies), which cases it
     flagged (designs, frequencies), and how many."""
     rights, frequencies = job.loads.shape[2], job.frequencies[0].size

@@ -35,8 +35,8 @@ POINTS = 57
 class Asking(Block):
     """What a plan asks, as plain values: the ``settings`` that tell one sweep from another."""
 
-    gives: ClassVar[tuple[str, ...]] = ()
-    """The figures of its answer, where they are known beforehand."""
+    gives: ClassVar[Mapping[str, str]] = {}
+    """The figures of its answer with their quantities, where they are known beforehand."""
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -96,7 +96,11 @@ class Linear(OverSpeed):
 class ModesRun(Asking):
     """Natural frequencies: the lowest ``count`` elastic modes in one gear."""
 
-    gives = ("frequency", "damped_ratio", "order_speed")
+    gives: ClassVar[Mapping[str, str]] = {
+        "frequency": "frequency",
+        "damped_ratio": "damping_ratio",
+        "order_speed": "speed",
+    }
     analysis: Literal["modes"]
     gear: GearName = Field("", description="engaged; default: the last listed")
     torque: Torque | None = Field(None, description="mean; default: that of most of the operating range")
@@ -127,7 +131,7 @@ class ModesRun(Asking):
 class ResponseRun(Linear):
     """Order response over speed at full load, or under one mean torque."""
 
-    gives = ("acceleration",)
+    gives: ClassVar[Mapping[str, str]] = {"acceleration": "acceleration"}
     analysis: Literal["response"]
     torque: Torque | None = Field(None, description="mean; default: full load")
 
@@ -159,7 +163,11 @@ class ResponseRun(Linear):
 class MapRun(Linear):
     """The map over speed and mean torque of all gears, and the worst of it gear by gear."""
 
-    gives = ("acceleration_swing", "worst_speed", "worst_torque")
+    gives: ClassVar[Mapping[str, str]] = {
+        "acceleration_swing": "acceleration",
+        "worst_speed": "speed",
+        "worst_torque": "torque",
+    }
     analysis: Literal["map"]
     gears: list[GearName] = Field(default_factory=list, description="default: all of them")
     torques: Whole = Field(13, description="how many mean torques up to full load")
@@ -192,9 +200,7 @@ class MapRun(Linear):
         """Those of the map."""
         return list(model.chosen_gears(self.gears or None))
 
-    def _told(
-        self, front: tuple[str, ...], half: Array, model: Model, speeds: Array, torques: Array
-    ) -> xr.Dataset:
+    def _told(self, front: tuple[str, ...], half: Array, model: Model, speeds: Array, torques: Array) -> xr.Dataset:
         """The largest in reach of full load of half swings (…, gear, mean torques × speeds), and where it is."""
         inside = np.where(model.within_full_load(speeds, torques).ravel(), half, -np.inf)
         at = np.where(np.isnan(inside), -np.inf, inside).argmax(axis=-1)
@@ -217,7 +223,12 @@ class MapRun(Linear):
 class TransientRun(Asking):
     """A scenario in time, by the name of its kind or of its file."""
 
-    gives = ("torque_lowest", "torque_highest", "twist_lowest", "twist_highest")
+    gives: ClassVar[Mapping[str, str]] = {
+        "torque_lowest": "torque",
+        "torque_highest": "torque",
+        "twist_lowest": "relative_angle",
+        "twist_highest": "relative_angle",
+    }
     analysis: Literal["transient"]
     scenario: str = Field(description="name of a kind, or of a file beside the plan")
     _block: Scenario | None = PrivateAttr(None)
@@ -245,7 +256,7 @@ class TransientRun(Asking):
 class ClaimsRun(Asking):
     """Claims of the thesis."""
 
-    gives = ("verdict",)
+    gives: ClassVar[Mapping[str, str]] = {"verdict": "number"}
     analysis: Literal["claims"]
     ids: list[str] = Field(description="of claims, as A6 or B2", min_length=1)
 

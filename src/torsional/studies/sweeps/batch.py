@@ -88,6 +88,13 @@ class Batch:
         found: ComplexArray = self._kept[key].angles(told, {place: laws[place] for place in varied[2]})
         return found
 
+    def numbers(self, gear: str, columns: Mapping[str, Any]) -> tuple[System, dict[str, Array], dict[int, Array]]:
+        """A system that stands for all, and of designs that are covered their tables by field, (designs, …), and
+        parameters by place of a law."""
+        fit = self._fit(gear)
+        assert fit is not None
+        return self._system(gear), *parts_of(self._system(gear), fit.at(_numbers(columns, slice(None))))
+
     def _variants(self, gear: str, fit: Fit, asked: Asked) -> Variants:
         fields, masses, laws = self._varied(gear, fit)
         system = self._system(gear)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
@@ -17,7 +17,10 @@ from torsional.numerics.arrays import Array
 from torsional.results import labelled
 from torsional.studies.sweeps.absorbers import EnvelopeRun, FrictionRun, InertiaRun
 from torsional.studies.sweeps.analyses import Analysis, Asking
+from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.periodic import PeriodicRun
+from torsional.studies.sweeps.work import Together
+from torsional.system import BoolArray
 from torsional.units import quoted, read, read_range
 
 Single: TypeAlias = Analysis | EnvelopeRun | InertiaRun | FrictionRun | PeriodicRun
@@ -46,7 +49,7 @@ class Criterion(Block):
             raise ModelError(
                 "no such analysis is asked", where="of", found=quoted(self.of), remedy=nearest(self.of, ask)
             )
-        known = ask[self.of].gives if self.of else ()
+        known = ask[self.of].gives if self.of else {}
         if known and self.figure not in known:
             told = {"found": quoted(self.figure), "remedy": nearest(self.figure, known)}
             raise ModelError("the analysis has no such figure", where="figure", **told)
@@ -92,14 +95,53 @@ class CriteriaRun(Asking):
             except ModelError as error:
                 raise error.located(prefix=f"run.criteria.{name}") from None
 
+    def quantity(self, name: str, model: Model | None = None) -> str:
+        """The quantity of a criterion, "" where nothing tells it before it is asked."""
+        one = self.criteria[name]
+        if one.sum:
+            return "" if model is None else self._quantity(one.sum[0], model)
+        return self.ask[one.of].gives.get(one.figure, "")
+
+    def of(self, names: Iterable[str]) -> CriteriaRun:
+        """The same question for some of the criteria alone."""
+        return self.model_copy(update={"criteria": {name: self.criteria[name] for name in names}})
+
     def with_asked(self, ask: Mapping[str, Any]) -> CriteriaRun:
         """A copy with other analyses by the same names."""
         return self.model_copy(update={"ask": dict(ask)})
 
     def __call__(self, model: Model) -> xr.Dataset:
         """Every criterion as a single figure with its unit."""
+        return self.taken({name: each(model) for name, each in self._wanted.items()}, model)
+
+    @property
+    def _wanted(self) -> dict[str, Any]:
+        """The analyses of which a criterion is taken."""
         wanted = {each.of for each in self.criteria.values()}
-        return self.taken({name: each(model) for name, each in self.ask.items() if name in wanted}, model)
+        return {name: each for name, each in self.ask.items() if name in wanted}
+
+    def possible(self, batch: Batch) -> bool:
+        """Whether designs can be asked together."""
+        return all(isinstance(each, Together) and each.possible(batch) for each in self._wanted.values())
+
+    def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
+        """Which of them."""
+        count = len(next(iter(columns.values())))
+        each = [run.covers(batch, columns) for run in self._wanted.values() if isinstance(run, Together)]
+        return np.asarray(np.all(each, axis=0)) if each else np.ones(count, dtype=bool)
+
+    def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
+        """The same of many designs."""
+        answers = {n: run.many(batch, columns) for n, run in self._wanted.items() if isinstance(run, Together)}
+        rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        found: dict[str, tuple[tuple[str], Any, str]] = {}
+        for name, each in self.criteria.items():
+            if each.sum:
+                told = [self._summed(each.sum, batch.model, row) for row in rows]
+            else:
+                told = [each.read({each.of: answers[each.of].isel(design=place)}) for place in range(len(rows))]
+            found[name] = (("design",), np.array([value for value, _ in told]), told[0][1])
+        return labelled(found, {}, analysis="criteria")
 
     def taken(self, answers: Mapping[str, xr.Dataset], model: Model) -> xr.Dataset:
         """The criteria of answers that are there, and of the values of the model's file."""
@@ -109,12 +151,15 @@ class CriteriaRun(Asking):
             found[name] = ((), value, quantity)
         return labelled(found, {}, analysis="criteria")
 
-    def _summed(self, paths: list[str], model: Model) -> tuple[float, str]:
+    def _summed(self, paths: list[str], model: Model, row: Mapping[str, Any] | None = None) -> tuple[float, str]:
+        """The sum of what the model's file, or a design in its ``row``, has at some paths."""
+        own = row or {}
         quantities = {self._quantity(path, model) for path in paths}
         if len(quantities) > 1:
             raise ModelError("values of different quantities have no sum", found=", ".join(sorted(quantities)))
         quantity = quantities.pop()
-        return sum(read(_at(model.document, path), quantity, path) for path in paths), quantity
+        values = [own[path] if path in own else _at(model.document, path) for path in paths]
+        return sum(read(value, quantity, path) for value, path in zip(values, paths, strict=True)), quantity
 
     def _quantity(self, path: str, model: Model) -> str:
         if path not in self._quantities:

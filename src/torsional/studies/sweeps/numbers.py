@@ -171,5 +171,3 @@ def parts_of(system: System, numbers: Array) -> tuple[dict[str, Array], dict[int
             laws[place] = numbers[:, at : at + law.parameters.size]
             at += law.parameters.size
     return tables, laws
-
-

@@ -105,7 +105,7 @@ def load_plan(path: str | os.PathLike[str]) -> Plan:
         file = SweepFile.model_validate(tree.data)
         model = load_model(folder / file.model)
         designs = _designs(file, model, folder)
-        run = _asked(file.run, folder, model)
+        run = asked_of(file.run, folder, model)
     except ValidationError as error:
         raise translated(error, tree) from None
     except ModelError as error:
@@ -128,7 +128,7 @@ def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
     for number, given in enumerate(file.over):
         if given.parameter in axes:
             raise ModelError("the parameter is named twice", where=f"over.{number}", found=quoted(given.parameter))
-        axes[given.parameter] = _axis(given, f"over.{number}", model, choice.method)
+        axes[given.parameter] = axis_of(given, f"over.{number}", model, choice.method)
     if choice.method == "grid":
         return grid({path: axis.levels for path, axis in axes.items()})
     if choice.count is None:
@@ -136,7 +136,8 @@ def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
     return sampled(choice.method, axes, choice.count, choice.seed)
 
 
-def _axis(given: Parameter, where: str, model: Model, method: str) -> Axis:
+def axis_of(given: Parameter, where: str, model: Model, method: str) -> Axis:
+    """What a parameter of a plan may be, tried on the model."""
     path = given.parameter
     if given.values is not None:
         if not (given.low is None and given.high is None and given.tolerance is None):
@@ -246,11 +247,11 @@ def _columns(path: Path, model: Model) -> dict[str, list[float]]:
     }
 
 
-def _asked(run: Any, folder: Path, model: Model) -> Run:
+def asked_of(run: Any, folder: Path, model: Model) -> Run:
     """The analysis, with the scenario it names read, its claims known, its criteria tried."""
     if isinstance(run, CriteriaRun):
         run.refuse_unknown(model)
-        return run.with_asked({name: _asked(each, folder, model) for name, each in run.ask.items()})
+        return run.with_asked({name: asked_of(each, folder, model) for name, each in run.ask.items()})
     if isinstance(run, TransientRun):
         source = run.scenario if run.scenario in KINDS else str(folder / run.scenario)
         return run.with_scenario(load_scenario(source))

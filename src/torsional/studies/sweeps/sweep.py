@@ -65,7 +65,7 @@ def sweep(
     if chunk < 1:
         raise ModelError("a chunk has at least one design", where="chunk", found=str(chunk))
     if cluster is None and processes != 1:
-        _refuse_unsendable(build, run)
+        refuse_unsendable(build, run)
     with contextlib.ExitStack() as stack:
         at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
         pieces = Pieces.of(Work(build, designs, run), at, chunk)
@@ -84,7 +84,7 @@ class Pieces:
     @classmethod
     def of(cls, work: Work, folder: str | os.PathLike[str], size: int) -> Pieces:
         """The pieces of some work in a folder, which is made; raises ModelError where it cannot be."""
-        with _writing(folder):
+        with writing(folder):
             return cls(Store.begun(folder, plan_of(work), f"{code()} by {size}"), work, size)
 
     @property
@@ -94,7 +94,7 @@ class Pieces:
 
     def worked(self, workers: Workers, progress: Progress) -> None:
         """Work on what is missing until nothing is; raises ModelError where the folder cannot be written any more."""
-        with _writing(self.store.folder):
+        with writing(self.store.folder):
             self._worked(workers, progress)
 
     def _worked(self, workers: Workers, progress: Progress) -> None:
@@ -173,7 +173,8 @@ def _unworkable(lost: Lost) -> ModelError:
     return ModelError("the sweep ends every process that works on it", where="workers", found=found, remedy=remedy)
 
 
-def _refuse_unsendable(*functions: object) -> None:
+def refuse_unsendable(*functions: object) -> None:
+    """ModelError for a function that cannot be sent to another process."""
     for each in functions:
         try:
             pickle.dumps(each)
@@ -186,7 +187,7 @@ def _refuse_unsendable(*functions: object) -> None:
 
 
 @contextlib.contextmanager
-def _writing(folder: str | os.PathLike[str]) -> Iterator[None]:
+def writing(folder: str | os.PathLike[str]) -> Iterator[None]:
     """What the system says against writing, as a ModelError that names the folder."""
     try:
         yield

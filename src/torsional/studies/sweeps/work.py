@@ -56,12 +56,14 @@ class Work:
     """What is asked of the ``designs``: each is built and run.
 
     ``build``: a model whose key paths the designs change, or a function of the named values that makes one; ``run``: a
-    function of a model that gives a Dataset, or numbers and arrays by name, of the same shape for every design.
+    function of a model that gives a Dataset, or numbers and arrays by name, of the same shape for every design;
+    ``batch``: of more designs than these, which are then asked together with them.
     """
 
     build: Build
     designs: Designs
     run: Run
+    batch: Batch | None = None
 
     def stretch(self, start: int, stop: int, aside: Collection[int] = ()) -> dict[str, np.ndarray]:
         """The chunk of designs ``start`` to ``stop`` − 1; designs ``aside`` are not tried.
@@ -86,6 +88,8 @@ class Work:
     @cached_property
     def _batch(self) -> Batch | None:
         """Designs asked together, where the analysis can and there are enough of them."""
+        if self.batch is not None:
+            return self.batch
         if not (isinstance(self.build, Model) and isinstance(self.run, Together) and len(self.designs) >= MANY):
             return None
         batch = Batch.of(self.build, self.designs)

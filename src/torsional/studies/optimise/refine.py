@@ -1,0 +1,289 @@
+"""Designs made better by exact gradients: the worst of the linear response, within the limits, by SLSQP.
+
+A largest value is no smooth function of the design, its values at single operating points are: t is made small under
+t ≥ a_i for the points that matter, and points that come to matter are added.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from torsional.errors import ModelError
+from torsional.files.edit import changed
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.studies.optimise.gradients import Around, Points, points_of
+from torsional.studies.optimise.task import Limit, Task
+from torsional.studies.sweeps.criteria import CriteriaRun
+
+SIDE = 1e-4
+"""Half the difference of a parameter between two models, over its value."""
+NEAR, GEARS = 0.95, 2
+"""Points that matter: all speeds, at the worst load, of so many gears whose largest is at least so much of all."""
+ROUNDS, ITERATIONS = 6, 5
+REACH = 0.25
+"""How far shares of the axes may go in one round, after which it is looked anew which points matter."""
+SPARE = 1e-5
+"""How far within its limits a refined design shall be, over their size, so that rounding puts none beyond."""
+ENOUGH = 1e-3
+"""A round that makes the aim smaller by less, over itself, is the last."""
+
+
+@dataclass
+class Active:
+    """The operating points of one criterion, all of them and those that matter."""
+
+    every: list[Points]
+    places: list[set[int]]
+
+    @classmethod
+    def of(cls, every: list[Points]) -> Active:
+        """None of them matters yet."""
+        return cls(every, [set() for _ in every])
+
+    def look(self, model: Model) -> None:
+        """Add the points that matter at a model."""
+        values = [Around(model, {}).values(points)[0] for points in self.every]
+        largest = max(float(each.max()) for each in values)
+        for places, points, each in zip(self.places, self.every, values, strict=True):
+            worst = _worst_loads(points, each)
+            gears = np.array(points.gear)[worst]
+            size = {gear: float(each[worst[gears == gear]].max()) for gear in dict.fromkeys(gears.tolist())}
+            near = sorted((gear for gear in size if size[gear] >= NEAR * largest), key=lambda gear: -size[gear])
+            places |= set(worst[np.isin(gears, near[:GEARS])].tolist())
+
+    def values(self, around: Around) -> tuple[Array, Array]:
+        """Figures at the points that matter, and their derivatives."""
+        chosen = [points.some(np.array(sorted(p))) for p, points in zip(self.places, self.every, strict=True) if p]
+        found = [around.values(points) for points in chosen]
+        return np.concatenate([each[0] for each in found]), np.concatenate([each[1] for each in found])
+
+
+def _worst_loads(points: Points, values: Array) -> Array:
+    """Of every gear and speed the place of the largest value."""
+    best: dict[tuple[str, float], int] = {}
+    for place, key in enumerate(zip(points.gear, points.speed.tolist(), strict=True)):
+        if key not in best or values[place] > values[best[key]]:
+            best[key] = place
+    return np.array(list(best.values()))
+
+
+@dataclass
+class Refinement:
+    """A design of a ``task`` to be made better: the sum of its objectives times ``weights`` smaller, limits kept."""
+
+    task: Task
+    weights: Mapping[str, float]
+    active: dict[str, Active] = field(default_factory=dict)
+    _known: dict[bytes, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        task = self.task
+        if not isinstance(task.build, Model) or not isinstance(task.run, CriteriaRun):
+            raise ModelError("gradients are taken of models of files and of criteria of a plan", where="refine")
+        if any(path.partition(".")[0] in ("engine", "operation") for path in task.axes):
+            raise ModelError("the engine's torques are held while designs are refined", where="refine")
+        for name in (*self.weights, *task.limits):
+            limit = task.limits.get(name)
+            if name in task.maximised or (limit is not None and np.isfinite(limit.least)):
+                continue
+            if points := points_of(task.run, name, task.build):
+                self.active[name] = Active.of(points)
+        if not self.active.keys() & self.weights.keys():
+            raise ModelError("no objective is a largest value of one order of a linear analysis", where="refine")
+
+    def refined(self, start: Array) -> Array:
+        """Shares of the axes that are no worse than those of ``start``."""
+        best = found = start
+        least, reach = self._aim(start), REACH
+        for _ in range(ROUNDS):
+            for each in self.active.values():
+                each.look(self._model(found))
+            self._known.clear()
+            found = self._solved(best, reach)
+            aim = self._aim(found)
+            gained = least - aim
+            if gained > 0:
+                best, least = found, aim
+            if abs(gained) <= ENOUGH * abs(least):
+                break
+            reach *= 0.5 if gained < 0 else 1.0
+        return best
+
+    def _aim(self, shares: Array) -> float:
+        """The weighted objectives of a design as they are; infinite beyond a limit or without an answer."""
+        try:
+            found = self.run_of(self.task.wanted)(self._model(shares))
+        except ModelError:
+            return float("inf")
+        for name, limit in self.task.limits.items():
+            if not float(limit.beyond(np.array(float(found[name])))) <= 0:
+                return float("inf")
+        told = [w * self.task.sign(name) * float(found[name]) for name, w in self.weights.items()]
+        return float(sum(told)) if np.isfinite(told).all() else float("inf")
+
+    def goals(self, shares: Array) -> Array:
+        """The objectives of the task, to be made small, of a design."""
+        found = self.run_of(self.task.objectives)(self._model(shares))
+        return np.array([self.task.sign(name) * float(found[name]) for name in self.task.objectives])
+
+    def run_of(self, names: Any) -> CriteriaRun:
+        """The question for some of the criteria alone."""
+        assert isinstance(self.task.run, CriteriaRun)
+        return self.task.run.of(names)
+
+    def _model(self, shares: Array) -> Model:
+        assert isinstance(self.task.build, Model)
+        return changed(self.task.build, self._values(shares))
+
+    def _values(self, shares: Array) -> dict[str, Any]:
+        return {name: values[0] for name, values in self.task.columns(shares[None]).items()}
+
+    @cached_property
+    def free(self) -> list[tuple[int, str]]:
+        """The parameters that are numbers between two ends: place and name."""
+        return [(i, name) for i, (name, axis) in enumerate(self.task.axes.items()) if not axis.levels]
+
+    @property
+    def others(self) -> list[str]:
+        """Objectives and limits whose derivatives are differences."""
+        return [name for name in dict.fromkeys((*self.weights, *self.task.limits)) if name not in self.active]
+
+    def at(self, shares: Array) -> tuple[dict[str, tuple[Array, Array]], dict[str, tuple[float, Array]]]:
+        """Figures with their derivatives by the shares: at the points that matter, and of all other criteria."""
+        key = shares.tobytes()
+        if key not in self._known:
+            around, scale = self._around(shares), self._scale(shares)
+            exact = {name: each.values(around) for name, each in self.active.items()}
+            told = {name: (values, slopes * scale) for name, (values, slopes) in exact.items()}
+            self._known = {key: (told, self._differences(around, scale))}
+        return self._known[key]  # type: ignore[no-any-return]
+
+    def _around(self, shares: Array) -> Around:
+        assert isinstance(self.task.build, Model)
+        values, sides = self._values(shares), {}
+        for _, name in self.free:
+            axis = self.task.axes[name]
+            side = SIDE * abs(float(values[name])) or SIDE * (axis.high - axis.low)
+            ends = [changed(self.task.build, values | {name: float(values[name]) + d * side}) for d in (-1.0, 1.0)]
+            sides[name] = (ends[0], ends[1], 2 * side)
+        return Around(changed(self.task.build, values), sides)
+
+    def _scale(self, shares: Array) -> Array:
+        """How a value changes with its share."""
+        values = self._values(shares)
+        rates = []
+        for _, name in self.free:
+            axis = self.task.axes[name]
+            rates.append(float(values[name]) * np.log(axis.high / axis.low) if axis.log else axis.high - axis.low)
+        return np.array(rates)
+
+    def _differences(self, around: Around, scale: Array) -> dict[str, tuple[float, Array]]:
+        if not self.others:
+            return {}
+        run = self.run_of(self.others)
+        own = run(around.model)
+        ends = [(run(low), run(high), step) for low, high, step in around.sides.values()]
+        return {
+            name: (
+                float(own[name]),
+                np.array([(float(high[name]) - float(low[name])) / step for low, high, step in ends]) * scale,
+            )
+            for name in self.others
+        }
+
+    def _solved(self, start: Array, reach: float) -> Array:
+        """No farther than ``reach``, the shares that SLSQP (Kraft, 1988) comes to."""
+        exact = [name for name in self.weights if name in self.active]
+        own = np.array([i for i, _ in self.free])
+        program = Program(self, start, own, exact)
+        begun = np.concatenate([start[own], np.ones(len(exact))])
+        near = [(max(0.0, share - reach), min(1.0, share + reach)) for share in start[own]]
+        bounds = [*near, *[(0.0, None)] * len(exact)]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # a step that leaves the bounds by rounding is clipped
+            try:
+                found = minimize(
+                    program.goal,
+                    begun,
+                    jac=True,
+                    bounds=bounds,
+                    constraints={"type": "ineq", "fun": program.margin, "jac": program.margin_slopes},
+                    method="SLSQP",
+                    options={"maxiter": ITERATIONS, "ftol": 1e-5},
+                )
+            except ModelError:  # a step to a design that cannot be
+                return start
+        return program.shares(found.x)
+
+
+@dataclass
+class Program:
+    """The nonlinear program of a refinement: variables are free shares, and a t for each exact objective."""
+
+    refinement: Refinement
+    start: Array
+    own: Any
+    exact: list[str]
+
+    def __post_init__(self) -> None:
+        values, _ = self.refinement.at(self.start)
+        self.sizes = {name: float(values[name][0].max()) for name in self.exact}
+        told = self.refinement.at(self.start)[1]
+        weights, task = self.refinement.weights, self.refinement.task
+        sizes = [w * self.sizes[name] if name in self.sizes else w * abs(told[name][0]) for name, w in weights.items()]
+        self.scale, self.task = sum(sizes) or 1.0, task
+
+    def shares(self, x: Array) -> Array:
+        """The whole design of some variables."""
+        whole = self.start.copy()
+        whole[self.own] = np.clip(x[: len(self.own)], 0.0, 1.0)
+        return whole
+
+    def goal(self, x: Array) -> tuple[float, Array]:
+        """The aim over its size at the start, and its gradient."""
+        _, told = self.refinement.at(self.shares(x))
+        goal, slope, count = 0.0, np.zeros(x.size), len(self.own)
+        for name, weight in self.refinement.weights.items():
+            if name in self.exact:
+                place, size = count + self.exact.index(name), self.sizes[name]
+                goal, slope[place] = goal + weight * size * x[place], weight * size
+            else:
+                goal += weight * self.task.sign(name) * told[name][0]
+                slope[:count] += weight * self.task.sign(name) * told[name][1]
+        return goal / self.scale, slope / self.scale
+
+    def margin(self, x: Array) -> Array:
+        """What must not be negative."""
+        return np.concatenate([values for values, _ in self._margins(x)])
+
+    def margin_slopes(self, x: Array) -> Array:
+        """Its derivatives."""
+        return np.concatenate([slopes for _, slopes in self._margins(x)])
+
+    def _margins(self, x: Array) -> Iterator[tuple[Array, Array]]:
+        values, told = self.refinement.at(self.shares(x))
+        count = len(self.own)
+        for place, name in enumerate(self.exact, count):
+            found, slopes = (each / self.sizes[name] for each in values[name])
+            rows = np.zeros((found.size, x.size))
+            rows[:, :count], rows[:, place] = -slopes, 1.0
+            yield x[place] - found, rows
+        for name, limit in self.task.limits.items():
+            one = values[name] if name in values else (np.array([told[name][0]]), told[name][1][None])
+            yield from _within(limit, one, x.size)
+
+
+def _within(limit: Limit, found: tuple[Array, Array], size: int) -> Iterator[tuple[Array, Array]]:
+    for end, sign in ((limit.most, 1.0), (limit.least, -1.0)):
+        if np.isfinite(end):
+            rows = np.zeros((found[0].size, size))
+            rows[:, : found[1].shape[1]] = -sign * found[1] / (abs(end) or 1.0)
+            yield sign * (end - found[0]) / (abs(end) or 1.0) - SPARE, rows
