@@ -7,6 +7,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from torsional import __version__
 from torsional.cli.answers import print_json
@@ -190,7 +191,7 @@ def tell_failures(found: Collected) -> None:
     tell_states(*found.states)
 
 
-def tell_states(state: np.ndarray, reasons: np.ndarray) -> None:
+def tell_states(state: Any, reasons: Any) -> None:
     """The same of the status and the reason of every design."""
     failed = state != OK
     if not failed.any():
