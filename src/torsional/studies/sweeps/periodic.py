@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
@@ -23,10 +24,16 @@ from torsional.studies.sweeps.analyses import OverSpeed
 class PeriodicRun(OverSpeed):
     """The main branch of periodic motion over speed, of a model whose springs have stages."""
 
-    gives = (
-        "twist_swing", "acceleration_swing", "worst_speed", "folds", "doublings", "fold_speed", "doubling_speed",
-        "unstable_share",
-    )  # fmt: skip
+    gives: ClassVar[Mapping[str, str]] = {
+        "twist_swing": "relative_angle",
+        "acceleration_swing": "acceleration",
+        "worst_speed": "speed",
+        "folds": "number",
+        "doublings": "number",
+        "fold_speed": "speed",
+        "doubling_speed": "speed",
+        "unstable_share": "ratio",
+    }
     analysis: Literal["periodic"]
     torque: Torque | None = Field(None, description="mean; default: full load")
     highest_order: Order = Field(HIGHEST_ORDER, description="of the harmonics")
