@@ -17,6 +17,7 @@ import pytest
 from tests.studies.test_sweep_plan import ROOT, planned
 
 import torsional as tv
+from torsional.studies.sweeps import clients
 from torsional.studies.sweeps.plan import load_plan
 from torsional.studies.sweeps.sweep import Pieces
 
@@ -49,6 +50,28 @@ def test_failing_designs_have_an_exit_code_of_their_own(torsional: Run, tmp_path
     told = torsional("sweep", str(path), "-o", "found.csv")
     assert told.code == 3 and Path("found.csv").exists() and "refused" in told.out
     assert "3 of 9 designs have no answer" in told.err and "3 × absorber.primary_inertia" in told.err
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--cluster", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: no scheduler answers"),
+        (["--cluster", "there"], "--cluster: this is no address of a scheduler; found 'there'; allowed: "),
+        (["--cluster", "tcp://127.0.0.1:1", "--processes", "2"], "processes here or a cluster, not both"),
+    ],
+)
+def test_clusters_that_cannot_be_are_told(
+    torsional: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], told: str
+) -> None:
+    monkeypatch.setattr(clients, "PATIENCE", 0.2)
+    found = torsional("sweep", str(planned(tmp_path)), *options)
+    assert found.code == 2 and told in found.err and found.err.count("\n") == 1
+
+
+def test_a_missing_library_is_told(torsional: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    found = torsional("sweep", str(planned(tmp_path)), "--cluster", "tcp://127.0.0.1:1")
+    assert found.code == 2 and "pip install 'torsional[cluster]'" in found.err
 
 
 def test_a_bad_plan_leaves_no_folder(torsional: Run, tmp_path: Path) -> None:

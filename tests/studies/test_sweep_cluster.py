@@ -13,7 +13,7 @@ from tests.studies.test_sweep import ENDS, LEVELS, TRUCK, answered, counted, mad
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.studies.sweeps import clients, cluster, remote, sampled, sweep, table
-from torsional.studies.sweeps.workers import Dask
+from torsional.studies.sweeps.workers import Dask, Slurm
 
 DESIGNS = sampled("latin_hypercube", ENDS, 9, seed=2)
 
@@ -64,15 +64,50 @@ def test_small_chunks_are_asked_together(client: Any, monkeypatch: pytest.Monkey
     asked: list[int] = []
     submit = cluster.ClusterCrew._submit
 
-    def noted(crew: cluster.ClusterCrew, task: Any) -> None:
+    def noted(crew: cluster.ClusterCrew, task: Any, unaware: str = "") -> None:
         asked.append(len(task.numbers))
-        submit(crew, task)
+        submit(crew, task, unaware)
 
     monkeypatch.setattr(cluster.ClusterCrew, "_submit", noted)
-    designs = sampled("sobol", ENDS, 200, seed=1)
+    designs = sampled("sobol", ENDS, 80, seed=1)
     found = sweep(TRUCK, designs, counted, cluster=client, chunk=1)
     assert same(found, sweep(TRUCK, designs, counted))
-    assert asked[0] == 1 and max(asked) > 5 and len(asked) < 60
+    assert asked[0] == 1 and max(asked) > 5 and len(asked) < 30
+
+
+def test_what_workers_die_of_is_cut_down_to_the_design(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a scheduler that gives up what holds designs 4 or 7 of nine, whatever is asked beside them."""
+    asked: list[tuple[tuple[int, ...], int]] = []
+    told = cluster.ClusterCrew._told
+
+    def dying(crew: cluster.ClusterCrew, future: Any) -> Any:
+        task, _ = crew._out[future.key]
+        designs = {d for n in task.numbers for d in crew._pieces.designs(n)} if task.design < 0 else {task.design}
+        if not (designs - crew._aside()) & {4, 7}:
+            return told(crew, future)
+        asked.append(task)
+        crew._deaths += 1
+        return None
+
+    monkeypatch.setattr(cluster.ClusterCrew, "_told", dying)
+    found = sweep(TRUCK, DESIGNS, counted, cluster=client, chunk=2)
+    assert found.status.values.tolist() == [0, 0, 0, 0, 3, 0, 0, 3, 0]
+    assert found.reason.values[4] == "ended 3 processes" and found.nodes.values[[0, 8]].all()
+    alone = [task.design for task in asked if task.design >= 0]
+    assert sorted(alone) == [4, 4, 4, 7, 7, 7]
+
+
+def test_a_piece_that_ends_workers_only_as_a_whole_is_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = cluster.ClusterCrew._told
+
+    def dying(crew: cluster.ClusterCrew, future: Any) -> Any:
+        task, _ = crew._out[future.key]
+        crew._deaths += 1
+        return told(crew, future) if task.design >= 0 else None
+
+    monkeypatch.setattr(cluster.ClusterCrew, "_told", dying)
+    with pytest.raises(ModelError, match=r"ends every process .* each design by itself does not.* give wor"):
+        sweep(TRUCK, DESIGNS, counted, cluster=client, chunk=5)
 
 
 def test_other_code_is_refused(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,3 +160,22 @@ def test_a_client_that_is_closed_is_refused(client: Any) -> None:
         pass
     with pytest.raises(ModelError, match="the client is not connected; found closed"):
         sweep(TRUCK, DESIGNS, answered, cluster=closed)
+
+
+def test_a_scheduler_without_workers_is_waited_for_with_a_word(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The word, a warning, is an error here and so ends the waiting."""
+    monkeypatch.setattr(cluster, "LONELY", 0.1)
+    monkeypatch.setattr(cluster, "LOOK", 0.05)
+    local = type(client.cluster)
+    with (
+        local(n_workers=0, processes=False, dashboard_address=":0", silence_logs=50) as here,
+        type(client)(here, set_as_default=False) as lonely,
+        pytest.raises(UserWarning, match="has no worker; waiting for one"),
+    ):
+        sweep(TRUCK, DESIGNS, counted, cluster=lonely)
+
+
+def test_a_queue_that_is_not_here_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ModelError, match=r"queueing system is not here; found no command sbatch; start the sweep on"):
+        sweep(TRUCK, DESIGNS, answered, cluster=Slurm(kind="slurm", jobs=1, cores=2, memory="2 GB"))

@@ -15,7 +15,7 @@ from torsional.quantities import acceleration, swing
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.sweeps.plan import load_plan
 from torsional.studies.sweeps.sweep import sweep
-from torsional.studies.sweeps.workers import Processes
+from torsional.studies.sweeps.workers import Dask, LocalCluster, Lsf, Pbs, Processes, Slurm
 
 ROOT = Path(__file__).parents[2]
 TRUCK = ROOT / "examples" / "truck_dmf.yaml"
@@ -30,6 +30,7 @@ chunk: 4
 workers: {{kind: processes, count: 1}}
 """
 MODES = "{analysis: modes, count: 3}"
+WORKERS = "{kind: processes, count: 1}"
 
 
 def planned(folder: Path, run: str = MODES, text: str = PLAN, **changes: str) -> Path:
@@ -175,6 +176,63 @@ def test_bad_plans_are_refused(tmp_path: Path, old: str, new: str, told: str) ->
     path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
     with pytest.raises(ModelError, match=told):
         load_plan(path)
+
+
+JOBS = "jobs: 8, cores: 16, memory: 32 GB"
+
+
+@pytest.mark.parametrize(
+    ("workers", "kind"),
+    [
+        ("{kind: dask, address: tcp://node-1:8786}", Dask),
+        ("{kind: local_cluster}", LocalCluster),
+        (f'{{kind: slurm, {JOBS}, walltime: "1-02:00:00", queue: fast, account: me, extra: [--exclusive]}}', Slurm),
+        (f'{{kind: pbs, {JOBS}, walltime: "02:00:00", account: me, interface: ib0, prologue: [module load x]}}', Pbs),
+        (f'{{kind: lsf, {JOBS}, walltime: "02:00", project: me}}', Lsf),
+    ],
+)
+def test_workers_of_a_plan(tmp_path: Path, workers: str, kind: type) -> None:
+    path = planned(tmp_path)
+    path.write_text(path.read_text(encoding="utf-8").replace(WORKERS, workers), encoding="utf-8")
+    assert isinstance(load_plan(path).workers, kind)
+
+
+@pytest.mark.parametrize(
+    ("workers", "told"),
+    [
+        ("{kind: slumr, jobs: 8}", "workers.*slumr"),
+        ("{count: 2}", "workers.*kind"),
+        ("{kind: processes, count: -1}", "workers.*count"),
+        ("{kind: dask}", "workers.*address"),
+        ("{kind: dask, address: node-1}", "workers.*no address of a scheduler; found 'node-1'.*tcp://host:8786"),
+        ("{kind: slurm, jobs: 8, cores: 16}", "workers.*memory"),
+        ("{kind: slurm, jobs: 8, cores: 16, memory: 32}", "workers.*memory"),
+        ("{kind: slurm, jobs: 8, cores: 16, memory: much}", "no size of memory; found 'much'; allowed: .*16 GB"),
+        (f"{{kind: slurm, {JOBS}, walltime: long}}", "no time of a job; found 'long'"),
+        (f"{{kind: slurm, {JOBS}, queu: fast}}", "did you mean 'queue'"),
+        (f"{{kind: lsf, {JOBS}, account: me}}", "workers.*account"),
+    ],
+)
+def test_workers_that_cannot_be_are_refused(tmp_path: Path, workers: str, told: str) -> None:
+    path = planned(tmp_path)
+    path.write_text(path.read_text(encoding="utf-8").replace(WORKERS, workers), encoding="utf-8")
+    with pytest.raises(ModelError, match=told):
+        load_plan(path)
+
+
+def test_jobs_are_asked_for_as_the_systems_want_it() -> None:
+    """The scripts that dask-jobqueue would send, without a queue."""
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    given: dict[str, Any] = {"jobs": 2, "cores": 4, "memory": "8 GB", "queue": "fast", "extra": ["--x=1"]}
+    given["prologue"] = ["load y"]
+    for asked, lines in (
+        (Slurm(kind="slurm", account="me", walltime="02:00:00", **given), ["-p fast", "-A me", "-t 02:00:00"]),
+        (Pbs(kind="pbs", account="me", walltime="02:00:00", **given), ["-q fast", "-A me", "walltime=02:00:00"]),
+        (Lsf(kind="lsf", project="me", walltime="02:00", **given), ["-q fast", '-P "me"', "-W 02:00", "-n 4"]),
+    ):
+        job = getattr(jobqueue, asked.queueing).job_cls("tcp://127.0.0.1:1", name="w", **asked.settings)
+        for line in [*lines, "--x=1", "load y", "--nworkers 4", "--nthreads 1"]:
+            assert line in job.job_script()
 
 
 def test_the_plans_of_the_examples_are_plans() -> None:

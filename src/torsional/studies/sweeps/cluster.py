@@ -22,7 +22,7 @@ from torsional.errors import ModelError
 from torsional.studies.crew import NOWHERE, Lost
 from torsional.studies.sweeps.clients import joined, library
 from torsional.studies.sweeps.identity import code
-from torsional.studies.sweeps.remote import DONE, OTHER, UNKNOWN, Reply, answered, known, source
+from torsional.studies.sweeps.remote import DONE, OTHER, UNKNOWN, Reply, answered, source
 from torsional.studies.sweeps.work import CRASHES
 
 if TYPE_CHECKING:
@@ -126,14 +126,16 @@ class ClusterCrew:
             together = max(1, round(ENOUGH / statistics.median(self._costs) + 0.5)) if self._costs else 1
             self._submit(_Task(tuple(waiting.popleft() for _ in range(min(together, len(waiting))))))
 
-    def _submit(self, task: _Task) -> None:
+    def _submit(self, task: _Task, unaware: str = "") -> None:
+        """Ask a task; with the sweep itself, of the worker by preference, where one was ``unaware`` of it."""
         self._given += 1
         key = f"torsional-{self._key}-{self._given}"
-        aside = sorted(self._aside())
-        with self._connected():
-            future = self._client.submit(
-                answered, code(), self._key, task.numbers, aside, task.design, key=key, pure=False
-            )
+        aside, payload = sorted(self._aside()), self._payload if unaware else b""
+        place = {"workers": [unaware], "allow_other_workers": True} if unaware else {}
+        asked = code(), self._key, task.numbers, aside, task.design, payload
+        with self._connected(), warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Sending large graph")
+            future = self._client.submit(answered, *asked, key=key, pure=False, **place)
         self._out[key] = task, future
         future.add_done_callback(self._done.put)
 
@@ -151,8 +153,7 @@ class ClusterCrew:
             return
         task, _ = self._out.pop(future.key)
         if told is not None and told.kind == UNKNOWN:
-            self._introduce(told.address)
-            self._submit(task)
+            self._submit(task, told.address)
             return
         yield task, told
 
@@ -177,11 +178,6 @@ class ClusterCrew:
         if told.kind in (DONE, UNKNOWN):
             return told
         raise _refusal(told)
-
-    def _introduce(self, address: str) -> None:
-        """Send a worker the sweep; one that dies over it is asked no more."""
-        with self._connected():
-            self._client.run(known, self._key, self._payload, workers=[address], on_error="ignore")
 
     def _look(self) -> None:
         """See who is there, from time to time, and say so where nobody is."""

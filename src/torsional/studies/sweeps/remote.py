@@ -37,23 +37,29 @@ class Reply(NamedTuple):
     address: str
 
 
-def known(key: str, sent: bytes) -> None:
-    """Take a sweep."""
-    while len(_SENT) >= SWEEPS:
+def _keep(key: str, sent: bytes) -> None:
+    while key not in _SENT and len(_SENT) >= SWEEPS:
         first = next(iter(_SENT))
         _SENT.pop(first)
         _READ.pop(first, None)
     _SENT[key] = sent
 
 
-def answered(own: str, key: str, numbers: Sequence[int], aside: Collection[int], design: int = -1) -> Reply:
-    """Some chunks of a sweep as bytes, or one ``design`` of it tried, for a driver of the code ``own``."""
+def answered(
+    own: str, key: str, numbers: Sequence[int], aside: Collection[int], design: int = -1, sent: bytes = b""
+) -> Reply:
+    """Some chunks of a sweep as bytes, or one ``design`` of it tried, for a driver of the code ``own``.
+
+    ``sent``: the sweep itself, where a worker has said that it does not know it.
+    """
     from distributed import get_worker
 
     address = get_worker().address
     with _ONE:
         if code() != own:
             return Reply(OTHER, [__version__, code()], [], address)
+        if sent:
+            _keep(key, sent)
         if key not in _SENT:
             return Reply(UNKNOWN, [], [], address)
         try:
