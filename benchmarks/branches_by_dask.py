@@ -21,13 +21,14 @@ import ours_periodic as ours
 
 from torsional import Coupling, Inertia, Powertrain, Shaft, assemble
 from torsional.laws import Hinges
-from torsional.solvers.periodic import periodic_response
+from torsional.solvers.periodic.response import Exploration, explorer_of
 from torsional.studies.sweeps import sampled, sweep
 from torsional.studies.sweeps.clients import joined
 from torsional.studies.sweeps.workers import LocalCluster
 
 ENDS = {"first": (8e3, 12e3), "second": (20e3, 30e3), "gap": (0.06, 0.10)}
 CHUNK, TOLD = 50, 4
+ASKED = Exploration(highest_order=ours.HIGHEST, depth=0, stability=False)
 
 
 def line(first: float, second: float, gap: float):
@@ -47,14 +48,12 @@ def line(first: float, second: float, gap: float):
 def branch(system) -> dict:
     """Its branch: points, order 3 at the lowest speed, the speeds of folds and period doublings, processor time."""
     since = time.process_time()
-    found = periodic_response(
-        system, ours.excitation(), ours.SPAN, highest_order=ours.HIGHEST, depth=0, stability=False
-    )
-    kinds, speeds = found.bifurcation_type.values, found.bifurcation_speed.values / dmf12.RPM
-    told = {"points": found.sizes["point"], "seconds": time.process_time() - since}
-    told["amplitude"] = float(abs(found.twist.sel(element=ours.SPRINGS, order=3.0)[0]))
+    found = explorer_of(system, ours.excitation(), ours.SPAN, ASKED).explored()[0]
+    seconds = time.process_time() - since
+    told = {"points": len(found.points), "seconds": seconds}
+    told["amplitude"] = float(abs(found.problem.harmonics_of(found.scaled)[0, 0, 1]))
     for name in ("fold", "period doubling"):
-        at = np.sort(speeds[kinds == name])
+        at = np.sort([event.parameter / dmf12.RPM for event in found.events if event.event == name])
         told[f"{name}s"] = at.size
         told[name] = ("place", np.append(at[:TOLD], np.full(max(TOLD - at.size, 0), np.nan)))
     return told
