@@ -13,13 +13,14 @@ from torsional.files.edit import changed
 from torsional.model import Model
 from torsional.studies.sweeps import sampled, sweep
 from torsional.studies.sweeps import work as working
-from torsional.studies.sweeps.analyses import MapRun, ResponseRun
+from torsional.studies.sweeps.analyses import MapRun, ModesRun, ResponseRun
 from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.designs import Axis, Designs, grid, table
 from torsional.studies.sweeps.work import MANY, Work
 
 RESPONSE = ResponseRun.model_validate({"analysis": "response", "speed": [70.0, 200.0, 13.0], "orders": [1.5, 3.0]})
 MAP = MapRun.model_validate({"analysis": "map", "gears": ["1", "12"], "speed": [70.0, 200.0, 26.0], "torques": 3})
+MODES = ModesRun.model_validate({"analysis": "modes", "count": 5})
 TWO = MAP.model_copy(update={"orders": [3.0, 6.0]})
 OVER = {"absorber.stiffness": (3e3, 20e3), "absorber.primary_inertia": (0.8, 1.8), "absorber.damping": (5.0, 60.0)}
 
@@ -49,7 +50,7 @@ def assert_alike(found: xr.Dataset, expected: xr.Dataset) -> None:
             np.testing.assert_array_equal(found[name], values)
 
 
-@pytest.mark.parametrize("run", [RESPONSE, MAP, TWO], ids=["response", "map", "map of two orders"])
+@pytest.mark.parametrize("run", [MODES, RESPONSE, MAP, TWO], ids=["modes", "response", "map", "map of two orders"])
 def test_designs_together_are_designs_one_by_one(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Soft springs meet their stops at full load, at torques that differ from design to design."""
     truck, designs = model("truck_dmf"), sampled("sobol", OVER, MANY, seed=3)

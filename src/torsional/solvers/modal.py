@@ -7,6 +7,7 @@ import xarray as xr
 
 from torsional.arguments import checked
 from torsional.numerics.arrays import Array
+from torsional.numerics.modes.damped import DampedModes
 from torsional.numerics.modes.damped import damped_modes as quadratic_modes
 from torsional.numerics.modes.undamped import Modes, modes
 from torsional.results import dataset
@@ -80,8 +81,7 @@ def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
     """
     linear(system)
     told, system = system.hash, system.switched(speed)
-    c, m, stiffness = system.connections, system.masses, _stiffness(system, speed)
-    found = quadratic_modes(c.weights, stiffness, c.weights, c.damping, m.weights, m.inertia)
+    found = _damped(system, speed)
     angles = system.T @ found.shapes
     largest = angles[np.abs(angles).argmax(axis=0), np.arange(found.eigenvalues.size)]
     return dataset(
@@ -98,9 +98,21 @@ def damped_modes(system: System, speed: float = 0.0) -> xr.Dataset:
     )
 
 
+def damped_frequencies(system: System, speed: float = 0.0) -> tuple[Array, Array]:
+    """|λ| [rad/s] and damping ratio of `damped_modes` alone."""
+    linear(system)
+    found = _damped(system.switched(speed), speed)
+    return found.omega, found.damping_ratio
+
+
 def natural_frequencies(system: System, speed: float = 0.0) -> Array:
     """Undamped angular frequencies [rad/s] of a linear system at a mean ``speed`` [rad/s], ascending."""
     return _modes(system.switched(speed), speed).omega
+
+
+def _damped(system: System, speed: float) -> DampedModes:
+    c, m = system.connections, system.masses
+    return quadratic_modes(c.weights, _stiffness(system, speed), c.weights, c.damping, m.weights, m.inertia)
 
 
 def _stiffness(system: System, speed: float) -> Array:

@@ -15,10 +15,10 @@ from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, 
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.numerics.elimination.backends import backend
-from torsional.quantities import acceleration, order_speed, swing
+from torsional.quantities import acceleration, swing
 from torsional.results import labelled
 from torsional.solvers.map import response_map
-from torsional.solvers.modal import damped_modes, modal
+from torsional.solvers.modal import damped_frequencies, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.base import VERDICTS
@@ -26,7 +26,7 @@ from torsional.studies.register import claims
 from torsional.studies.scenarios.running import run_scenario
 from torsional.studies.sweeps.batch import Asked, Batch
 from torsional.studies.trucks import Trucks
-from torsional.system import BoolArray
+from torsional.system import BoolArray, System
 
 SpeedRange = Annotated[tuple[float, ...], Quantity("speed", above=0, shape="range")]
 POINTS = 57
@@ -108,21 +108,46 @@ class ModesRun(Asking):
 
     def __call__(self, model: Model) -> xr.Dataset:
         """Their ``frequency``, ``damped_ratio``, ``order_speed`` of the main order; no number where there are fewer."""
-        torque = model.typical_torque() if self.torque is None else self.torque
-        system, _ = at_operating_point(model, torque, self.gear or None)
-        found = modal(system)
-        found = found.isel(mode=np.flatnonzero(found.frequency.values > 0)[: self.count])
-        damped = damped_modes(system)
-        nearest = [int(abs(damped.frequency.values - f).argmin()) for f in found.frequency.values]
+        system, _ = at_operating_point(model, self._mean(model), self.gear or None)
+        return self._told(("mode",), self._modes(system), model)
+
+    def possible(self, batch: Batch) -> bool:
+        """Whether designs can be asked together."""
+        return batch.answers(batch.model.gear_name(self.gear or None))
+
+    def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
+        """Which of them."""
+        return batch.covers(batch.model.gear_name(self.gear or None), columns)
+
+    def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
+        """The same of many designs."""
+        model = batch.model
+        systems = batch.systems(model.gear_name(self.gear or None), self._mean(model), columns)
+        return self._told(("design", "mode"), np.stack([self._modes(system) for system in systems]), model)
+
+    def _mean(self, model: Model) -> float:
+        return model.typical_torque() if self.torque is None else self.torque
+
+    def _modes(self, system: System) -> Array:
+        """Natural frequencies [rad/s] and the damping ratios of the damped modes next to them, (count, 2)."""
+        omega = natural_frequencies(system)
+        omega = omega[omega > 0][: self.count]
+        damped, ratio = damped_frequencies(system)
+        nearest = abs(damped - omega[:, None]).argmin(axis=1)
+        found = np.full((self.count, 2), np.nan)
+        found[: omega.size] = np.column_stack([omega, ratio[nearest]])
+        return found
+
+    def _told(self, dims: tuple[str, ...], found: Array, model: Model) -> xr.Dataset:
         orders = model.engine_orders(1)
-        speeds = order_speed(found.frequency, orders[0]).values if len(orders) else np.full(found.sizes["mode"], np.nan)
+        main = orders[0] if len(orders) else np.nan
         values = {
-            "frequency": (found.frequency.values, "frequency"),
-            "damped_ratio": (damped.damping_ratio.values[nearest], "damping_ratio"),
-            "order_speed": (speeds, "speed"),
+            "frequency": (found[..., 0] / (2 * np.pi), "frequency"),
+            "damped_ratio": (found[..., 1], "damping_ratio"),
+            "order_speed": (found[..., 0] / main, "speed"),
         }
         return labelled(
-            {name: (("mode",), _filled(v, self.count), quantity) for name, (v, quantity) in values.items()},
+            {name: (dims, v, quantity) for name, (v, quantity) in values.items()},
             {"mode": (np.arange(self.count), "")},
             analysis="modes",
         )
@@ -289,7 +314,3 @@ def _half_swing(ripple: ComplexArray, orders: Array) -> Array:
         return size(ripple[..., 0])
     told = xr.DataArray(ripple, dims=[*(f"dim{n}" for n in range(ripple.ndim - 1)), "order"], coords={"order": orders})
     return np.asarray(swing(told).values)
-
-
-def _filled(values: Array, count: int) -> Any:
-    return np.append(values, np.full(max(count - values.size, 0), np.nan))[:count]

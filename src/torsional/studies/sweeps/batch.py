@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from torsional.errors import ModelError
 from torsional.files.edit import changed
-from torsional.laws.hinges import hinge_slopes
+from torsional.laws.hinges import hinge_slopes, hinge_tangents
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
+from torsional.solvers.equilibrium import linearize
 from torsional.solvers.operating import mean_state, torque_places
 from torsional.solvers.variants import NUMBERS, Loading, Variants
 from torsional.studies.sweeps.designs import Designs, Values
@@ -94,6 +95,24 @@ class Batch:
         fit = self._fit(gear)
         assert fit is not None
         return self._system(gear), *parts_of(self._system(gear), fit.at(_numbers(columns, slice(None))))
+
+    def systems(self, gear: str, torque: float, columns: Mapping[str, Any]) -> Iterator[System]:
+        """The linear systems of designs that are covered, about a mean engine torque [Nm]."""
+        system, tables, rows = self.numbers(gear, columns)
+        fit = self._fit(gear)
+        assert fit is not None
+        point = mean_state(self.model, system, torque)
+        linear = linearize(system, point)
+        fields, _, laws = self._varied(gear, fit)
+        tangents = {i: hinge_tangents(rows[i], point.torque[None, i])[:, 0] for i in laws.tolist()}
+        for design in range(len(tables["inertia"])):
+            own = {name: getattr(linear.connections, name).copy() for name in NUMBERS}
+            for name, values in own.items():
+                values[fields[name]] = tables[name][design, fields[name]]
+            for place, slope in tangents.items():
+                own["stiffness"][place] = slope[design]
+            masses = replace(linear.masses, inertia=tables["inertia"][design])
+            yield replace(linear.with_connections(**own), masses=masses)
 
     def _variants(self, gear: str, fit: Fit, asked: Asked) -> Variants:
         fields, masses, laws = self._varied(gear, fit)
