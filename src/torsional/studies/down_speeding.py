@@ -19,7 +19,7 @@ from torsional.components import Coupling, GearPair
 from torsional.engine import FullLoad
 from torsional.errors import ModelError
 from torsional.model import Model
-from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.arrays import Array, ComplexArray, size
 from torsional.quantities import swing
 from torsional.solvers.equilibrium import with_load_stiffness
 from torsional.solvers.harmonic import response
@@ -285,7 +285,7 @@ def mean_states(model: Model, system: System, torque: Array) -> tuple[Array, Arr
 def half_swing(found: ComplexArray, orders: Array) -> Array:
     """Half the peak-to-peak over an engine cycle, ``orders`` on the last axis; of a single one its amplitude."""
     if orders.size == 1:
-        return np.abs(found[..., 0])
+        return size(found[..., 0])
     dims = [f"axis{i}" for i in range(found.ndim - 1)]
     return np.asarray(swing(xr.DataArray(found, dims=[*dims, "order"], coords={"order": orders}), SAMPLES).values)
 

@@ -13,15 +13,16 @@ from torsional.errors import ModelError, nearest
 from torsional.files.scenario_blocks import GearName, Scenario
 from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, Whole
 from torsional.model import Model
-from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.arrays import Array, size
 from torsional.numerics.elimination.backends import backend
-from torsional.quantities import acceleration, swing
+from torsional.quantities import acceleration
 from torsional.results import labelled
 from torsional.solvers.map import response_map
 from torsional.solvers.modal import damped_frequencies, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.base import VERDICTS
+from torsional.studies.down_speeding import half_swing
 from torsional.studies.register import claims
 from torsional.studies.scenarios.running import run_scenario
 from torsional.studies.sweeps.batch import Asked, Batch
@@ -204,7 +205,7 @@ class MapRun(Linear):
         names, orders = self.gears_asked(model), self.asked_orders(model)
         found = response_map(model, speeds, torques, names, orders, nodes=[self.place(model)], elements=[])
         ripple = acceleration(found.angle.isel(node=0)).transpose("gear", "mean_torque", "speed", "order")
-        half = _half_swing(ripple.values, orders)
+        half = half_swing(ripple.values, orders)
         return self._told((), half.reshape(len(names), -1), model, speeds, torques)
 
     def many(self, batch: Batch, columns: Mapping[str, Any]) -> xr.Dataset:
@@ -218,7 +219,7 @@ class MapRun(Linear):
             angles = batch.angles(gear, asked, columns).reshape(len(half), cells, orders.size)
             ripple = angles * -np.tile(np.outer(speeds, orders) ** 2, (torques.size, 1))
             for row, values in zip(half, ripple, strict=True):
-                row[number] = _half_swing(values, orders)
+                row[number] = half_swing(values, orders)
         return self._told(("design",), half, model, speeds, torques)
 
     def gears_asked(self, model: Model) -> list[str]:
@@ -301,16 +302,3 @@ class ClaimsRun(Asking):
 
 
 Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun
-
-
-def size(values: ComplexArray) -> Array:
-    """Magnitudes, of the same bits whatever stands beside a value."""
-    return np.asarray(np.sqrt(values.real**2 + values.imag**2))
-
-
-def _half_swing(ripple: ComplexArray, orders: Array) -> Array:
-    """Half the swing (…) of orders (…, orders): a single one's amplitude, else that of their sum over a cycle."""
-    if orders.size == 1:
-        return size(ripple[..., 0])
-    told = xr.DataArray(ripple, dims=[*(f"dim{n}" for n in range(ripple.ndim - 1)), "order"], coords={"order": orders})
-    return np.asarray(swing(told).values)
