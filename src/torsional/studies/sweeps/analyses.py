@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field, PrivateAttr
 
-from torsional.errors import ModelError, nearest
+from torsional.errors import ModelError
 from torsional.files.scenario_blocks import GearName, Scenario
 from torsional.files.schema.fields import Block, Node, Order, Quantity, Torque, Whole
 from torsional.model import Model
@@ -21,12 +21,9 @@ from torsional.solvers.map import response_map
 from torsional.solvers.modal import damped_frequencies, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.solvers.run_up import run_up_response
-from torsional.studies.base import VERDICTS
 from torsional.studies.down_speeding import half_swing
-from torsional.studies.register import claims
 from torsional.studies.scenarios.running import run_scenario
 from torsional.studies.sweeps.batch import Asked, Batch
-from torsional.studies.trucks import Trucks
 from torsional.system import BoolArray, System
 
 SpeedRange = Annotated[tuple[float, ...], Quantity("speed", above=0, shape="range")]
@@ -279,26 +276,4 @@ class TransientRun(Asking):
         return found[names].sel(element=springs).drop_attrs(deep=False)
 
 
-class ClaimsRun(Asking):
-    """Claims of the thesis."""
-
-    gives: ClassVar[Mapping[str, str]] = {"verdict": "number"}
-    analysis: Literal["claims"]
-    ids: list[str] = Field(description="of claims, as A6 or B2", min_length=1)
-
-    def refuse_unknown(self) -> None:
-        """ModelError for an id that no claim has."""
-        for id in self.ids:
-            if id not in claims():
-                raise ModelError("there is no such claim", where="run.ids", found=id, remedy=nearest(id, claims()))
-
-    def __call__(self, model: Model) -> xr.Dataset:
-        """The ``verdict`` of each, by its place in `VERDICTS`."""
-        trucks = Trucks.of(model)
-        told = [VERDICTS.index(claims()[id].tried(trucks).verdict) for id in self.ids]
-        data = labelled({"verdict": (("claim",), told, "number")}, {"claim": (self.ids, "")}, analysis="claims")
-        data.verdict.attrs["flag_meanings"] = "; ".join(VERDICTS)
-        return data
-
-
-Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun | ClaimsRun
+Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun

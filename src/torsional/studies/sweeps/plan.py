@@ -23,10 +23,11 @@ from torsional.files.scenario import load_scenario
 from torsional.files.scenario_schema import KINDS
 from torsional.files.schema.fields import Block, Quantity, only_version
 from torsional.model import Model
-from torsional.studies.sweeps.analyses import ClaimsRun, TransientRun
+from torsional.studies.sweeps.analyses import TransientRun
 from torsional.studies.sweeps.criteria import CriteriaRun, Question
 from torsional.studies.sweeps.designs import Axis, Designs, grid, sampled, table
 from torsional.studies.sweeps.sweep import CHUNK
+from torsional.studies.sweeps.verdicts import ClaimsRun
 from torsional.studies.sweeps.work import Run, Work
 from torsional.studies.sweeps.workers import Processes, Settings
 from torsional.tables import cells, named, numbers
