@@ -64,7 +64,7 @@ def test_small_chunks_are_asked_together(client: Any, monkeypatch: pytest.Monkey
     asked: list[int] = []
     submit = cluster.ClusterCrew._submit
 
-    def noted(crew: cluster.ClusterCrew, task: Any, unaware: str = "") -> None:
+    def noted(crew: cluster.ClusterCrew, task: Any, unaware: bool = False) -> None:
         asked.append(len(task.numbers))
         submit(crew, task, unaware)
 

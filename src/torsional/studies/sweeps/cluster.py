@@ -126,16 +126,18 @@ class ClusterCrew:
             together = max(1, round(ENOUGH / statistics.median(self._costs) + 0.5)) if self._costs else 1
             self._submit(_Task(tuple(waiting.popleft() for _ in range(min(together, len(waiting))))))
 
-    def _submit(self, task: _Task, unaware: str = "") -> None:
-        """Ask a task; with the sweep itself, of the worker by preference, where one was ``unaware`` of it."""
+    def _submit(self, task: _Task, unaware: bool = False) -> None:
+        """Ask a task; with the sweep itself, where a worker was ``unaware`` of it.
+
+        No worker is preferred: should it die, the scheduler would wait for it to come back.
+        """
         self._given += 1
         key = f"torsional-{self._key}-{self._given}"
         aside, payload = sorted(self._aside()), self._payload if unaware else b""
-        place = {"workers": [unaware], "allow_other_workers": True} if unaware else {}
         asked = code(), self._key, task.numbers, aside, task.design, payload
         with self._connected(), warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph")
-            future = self._client.submit(answered, *asked, key=key, pure=False, **place)
+            future = self._client.submit(answered, *asked, key=key, pure=False)
         self._out[key] = task, future
         future.add_done_callback(self._done.put)
 
@@ -153,7 +155,7 @@ class ClusterCrew:
             return
         task, _ = self._out.pop(future.key)
         if told is not None and told.kind == UNKNOWN:
-            self._submit(task, told.address)
+            self._submit(task, unaware=True)
             return
         yield task, told
 
