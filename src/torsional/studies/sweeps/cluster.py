@@ -165,6 +165,7 @@ class ClusterCrew:
         Raises ModelError for what none can answer, and TimeoutError for an answer that is done and does not come.
         """
         from distributed import KilledWorker
+        from distributed.comm import CommClosedError
 
         try:
             told: Reply = future.result(COMING)
@@ -174,17 +175,18 @@ class ClusterCrew:
         except TimeoutError:
             raise
         except Exception as error:  # what the libraries there say, or that the connection is lost
-            if future.cancelled() or self._client.status != "running":
+            if future.cancelled() or isinstance(error, CommClosedError):
                 raise self._gone() from None
+            self._look(LOOK)
             raise _unbegun(self._address, error) from None
         if told.kind in (DONE, UNKNOWN):
             return told
         raise _refusal(told)
 
-    def _look(self) -> None:
-        """See who is there, from time to time, and say so where nobody is."""
+    def _look(self, since: float = 0.0) -> None:
+        """See who is there, from time to time (``since``: as if that were longer ago), and say so where nobody is."""
         now = time.monotonic()
-        if now - self._looked < LOOK:
+        if now - self._looked + since < LOOK:
             return
         self._looked = now
         if self._client.status != "running":
