@@ -165,7 +165,7 @@ class ClusterCrew:
         Raises ModelError for what none can answer, and TimeoutError for an answer that is done and does not come.
         """
         from distributed import KilledWorker
-        from distributed.comm import CommClosedError
+        from distributed.comm.core import CommClosedError
 
         try:
             told: Reply = future.result(COMING)
