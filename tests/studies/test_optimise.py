@@ -17,10 +17,12 @@ import xarray as xr
 
 import torsional as tv
 from torsional.errors import ModelError
+from torsional.files.edit import changed
 from torsional.model import Model
 from torsional.studies.optimise import Limit, Method, optimise
 from torsional.studies.optimise.front import front, knee
 from torsional.studies.optimise.gradients import Around, points_of
+from torsional.studies.optimise.lines import Built
 from torsional.studies.optimise.plan import load_optimisation
 from torsional.studies.optimise.presets import PRESETS, absorber_task, criteria_of, preset, stiff_tuned
 from torsional.studies.optimise.refine import Refinement
@@ -208,16 +210,21 @@ def concept(name: str) -> Task:
     return absorber_task(model, dict.fromkeys(own, (0.5, 1.5)), {})
 
 
-@pytest.mark.parametrize("name", ["dmf", "psva", "tva", "pendulum"])
-def test_derivatives_of_criteria_at_points_are_exact(name: str) -> None:
-    """Against differences of the figure at the same operating points."""
+@pytest.mark.parametrize(
+    ("name", "together"),
+    [("dmf", False), ("dmf", True), ("psva", False), ("tva", True), ("pendulum", True)],
+)
+def test_derivatives_of_criteria_at_points_are_exact(name: str, together: bool) -> None:
+    """Against differences of the figure at the same operating points; by built models, and by numbers of a batch."""
     task = concept(name)
-    refinement = Refinement(task, {"low_speed": 1.0, "high_speed": 1.0})
+    batch = task.batch() if together else None
+    assert (batch is not None) == together
+    refinement = Refinement(task, {"low_speed": 1.0, "high_speed": 1.0}, batch)
     assert set(task.limits) - {"space"} <= set(refinement.active)
     start = task.nominal_share
     assert start is not None
     for each in refinement.active.values():
-        each.look(refinement._model(start))
+        each.look(refinement.alone(start))
     exact, others = refinement.at(start)
     truth = task.run(task.build)  # type: ignore[operator, arg-type]
     for each, (values, _) in exact.items():
@@ -237,8 +244,9 @@ def test_gradients_make_a_design_better_and_keep_its_limits() -> None:
     task = concept("dmf")
     start = task.nominal_share
     assert start is not None
-    better = Refinement(task, {"low_speed": 1.0}).refined(start)
-    before, after = (task.run(Refinement(task, {"low_speed": 1.0})._model(share)) for share in (start, better))
+    better = Refinement(task, {"low_speed": 1.0}, task.batch()).refined(start)
+    models = [changed(task.build, {n: v[0] for n, v in task.columns(share[None]).items()}) for share in (start, better)]  # type: ignore[arg-type]
+    before, after = (task.run(model) for model in models)
     assert float(after["low_speed"]) < 0.9 * float(before["low_speed"])  # type: ignore[arg-type]
     for name, limit in task.limits.items():
         assert limit.beyond(np.array(float(after[name]))) <= 0  # type: ignore[arg-type]
@@ -252,7 +260,7 @@ def test_what_has_no_exact_gradients_says_so() -> None:
     assert "Not refined by gradients" in data.attrs["findings"]
     run = criteria_of(TRUCKS.dmf)
     assert points_of(run, "space", TRUCKS.dmf) == []
-    assert Around(TRUCKS.dmf, {}).values(points_of(run, "travel", TRUCKS.dmf)[0])[1].shape[1] == 0
+    assert Around(TRUCKS.dmf, Built(TRUCKS.dmf), {}).values(points_of(run, "travel", TRUCKS.dmf)[0])[1].shape[1] == 0
 
 
 # --- plans and presets ---

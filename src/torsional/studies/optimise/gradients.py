@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,14 +12,13 @@ import xarray as xr
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
 from torsional.solvers.derivatives import Slope, coordinate_derivatives
-from torsional.solvers.equilibrium import OperatingPoint, linearize
 from torsional.solvers.harmonic import order_response
-from torsional.solvers.operating import mean_state
+from torsional.studies.optimise.lines import Design, Line
 from torsional.studies.sweeps.absorbers import EnvelopeRun
 from torsional.studies.sweeps.analyses import MapRun, ResponseRun
 from torsional.studies.sweeps.criteria import CriteriaRun, Criterion, selected
 from torsional.studies.sweeps.envelopes import spring_ways
-from torsional.system import System, assemble
+from torsional.system import System
 
 LINEAR = ("acceleration", "acceleration_swing", "twist", "reach")
 """Figures of the linear analyses that have exact derivatives."""
@@ -104,11 +103,11 @@ def _chosen(
 
 @dataclass(frozen=True)
 class Around:
-    """A model, and pairs of models about it by parameter, each with the difference of the parameter between them."""
+    """A design of a ``model``, and pairs of designs about it by parameter, each with the parameter's difference."""
 
     model: Model
-    sides: Mapping[str, tuple[Model, Model, float]]
-    lines: dict[Any, Any] = field(default_factory=dict, compare=False)
+    centre: Design
+    sides: Mapping[str, tuple[Design, Design, float]]
 
     def values(self, points: Points) -> tuple[Array, Array]:
         """The figure at every point (points,) and its derivatives (points, parameters)."""
@@ -120,8 +119,8 @@ class Around:
         return found, slopes
 
     def _one_gear(self, gear: str, points: Points) -> tuple[Array, Array]:
-        line = self._line(self.model, gear, points.torque)
-        sides = [[self._line(side, gear, points.torque) for side in pair[:2]] for pair in self.sides.values()]
+        line = self.centre.line(gear, points.torque)
+        sides = [[side.line(gear, points.torque) for side in pair[:2]] for pair in self.sides.values()]
         steps = np.array([pair[2] for pair in self.sides.values()])
         tangents = np.hstack([line.state.stiffness, line.state.damping])[line.places]
         _, group = np.unique(tangents, axis=0, return_inverse=True)
@@ -142,19 +141,8 @@ class Around:
             return square * size, square[:, None] * rise
         return self._twisted(points, line, sides, steps, size, rise)
 
-    def _line(self, model: Model, gear: str, torque: Array) -> _Line:
-        """A model in a gear under mean torques, found once for all criteria."""
-        own, places = np.unique(torque, return_inverse=True)
-        key = id(model), gear
-        if key not in self.lines:
-            self.lines[key] = assemble(model.powertrain(gear))
-        known = (*key, own.tobytes())
-        if known not in self.lines:
-            self.lines[known] = mean_state(model, self.lines[key], own)
-        return _Line(self.lines[key], self.lines[known], places.ravel())
-
     def _twisted(
-        self, points: Points, line: _Line, sides: list[list[_Line]], steps: Array, size: Array, rise: Array
+        self, points: Points, line: Line, sides: list[list[Line]], steps: Array, size: Array, rise: Array
     ) -> tuple[Array, Array]:
         """Mean and vibration together, over the way to the stop where reach is asked."""
         mean = line.angle(points.where)
@@ -162,27 +150,10 @@ class Around:
         whole, moved = np.abs(mean) + size, np.sign(mean)[:, None] * slope + rise
         if points.figure == "twist":
             return whole, moved
-        way = spring_ways(self.model)[points.where]
-        ways = [[spring_ways(side)[points.where] for side in pair[:2]] for pair in self.sides.values()]
+        way = self.centre.way(points.where)
+        ways = [[side.way(points.where) for side in pair[:2]] for pair in self.sides.values()]
         longer = np.array([high - low if np.isfinite(high) else 0.0 for low, high in ways]) / steps
         return whole / way, moved / way - np.outer(whole, longer) / way**2
-
-
-@dataclass(frozen=True)
-class _Line:
-    """A model in one gear with its mean states under some torques, and which of them each point has."""
-
-    system: System
-    state: OperatingPoint
-    places: IntArray
-
-    def linear(self, point: int) -> System:
-        """The linear system about the state of a point."""
-        return linearize(self.system, self.state.at(int(self.places[point])))
-
-    def angle(self, name: str) -> Array:
-        """Mean twists of a connection."""
-        return np.asarray(self.state.angle[self.places, self.state.names.index(name)])
 
 
 def _motion(model: Model, system: System, points: Points, slopes: list[Slope]) -> tuple[ComplexArray, ComplexArray]:

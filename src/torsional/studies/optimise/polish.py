@@ -62,6 +62,9 @@ class Polish:
     searched: int
     number: int = KEPT
 
+    def __post_init__(self) -> None:
+        self.batch = self.task.batch()
+
     def ends(self) -> None:
         """Each objective alone."""
         for place, name in enumerate(self.task.objectives):
@@ -92,7 +95,7 @@ class Polish:
     def _from(self, place: int, weights: Mapping[str, float], task: Task) -> None:
         """Refine one design, and take it up where that made it better."""
         start, self.number = self.shares[place], self.number + 1
-        refinement = Refinement(task, weights)
+        refinement = Refinement(task, weights, self.batch)
         known = self.kept.store.get(self.number)
         if known is None or not np.array_equal(known["start"], start):
             known = {"start": start, "shares": refinement.refined(start)}

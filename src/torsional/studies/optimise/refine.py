@@ -7,7 +7,7 @@ t ≥ a_i for the points that matter, and points that come to matter are added.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -20,7 +20,9 @@ from torsional.files.edit import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.optimise.gradients import Around, Points, points_of
+from torsional.studies.optimise.lines import Built, Design, Numbered, Numbers
 from torsional.studies.optimise.task import Limit, Task
+from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.criteria import CriteriaRun
 
 SIDE = 1e-4
@@ -48,9 +50,9 @@ class Active:
         """None of them matters yet."""
         return cls(every, [set() for _ in every])
 
-    def look(self, model: Model) -> None:
-        """Add the points that matter at a model."""
-        values = [Around(model, {}).values(points)[0] for points in self.every]
+    def look(self, around: Around) -> None:
+        """Add the points that matter at a design."""
+        values = [around.values(points)[0] for points in self.every]
         largest = max(float(each.max()) for each in values)
         for places, points, each in zip(self.places, self.every, values, strict=True):
             worst = _worst_loads(points, each)
@@ -77,12 +79,17 @@ def _worst_loads(points: Points, values: Array) -> Array:
 
 @dataclass
 class Refinement:
-    """A design of a ``task`` to be made better: the sum of its objectives times ``weights`` smaller, limits kept."""
+    """A design of a ``task`` to be made better: the sum of its objectives times ``weights`` smaller, limits kept.
+
+    ``batch``: of all designs that there may be, where they can be asked together, which is quicker.
+    """
 
     task: Task
     weights: Mapping[str, float]
+    batch: Batch | None = None
     active: dict[str, Active] = field(default_factory=dict)
     _known: dict[bytes, Any] = field(default_factory=dict)
+    _states: dict[Any, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         task = self.task
@@ -105,7 +112,7 @@ class Refinement:
         least, reach = self._aim(start), REACH
         for _ in range(ROUNDS):
             for each in self.active.values():
-                each.look(self._model(found))
+                each.look(self.alone(found))
             self._known.clear()
             found = self._solved(best, reach)
             aim = self._aim(found)
@@ -120,28 +127,35 @@ class Refinement:
     def _aim(self, shares: Array) -> float:
         """The weighted objectives of a design as they are; infinite beyond a limit or without an answer."""
         try:
-            found = self.run_of(self.task.wanted)(self._model(shares))
+            found = self._asked(self.task.wanted, [self._values(shares)])[0]
         except ModelError:
             return float("inf")
         for name, limit in self.task.limits.items():
-            if not float(limit.beyond(np.array(float(found[name])))) <= 0:
+            if not float(limit.beyond(np.array(found[name]))) <= 0:
                 return float("inf")
-        told = [w * self.task.sign(name) * float(found[name]) for name, w in self.weights.items()]
+        told = [w * self.task.sign(name) * found[name] for name, w in self.weights.items()]
         return float(sum(told)) if np.isfinite(told).all() else float("inf")
 
     def goals(self, shares: Array) -> Array:
         """The objectives of the task, to be made small, of a design."""
-        found = self.run_of(self.task.objectives)(self._model(shares))
-        return np.array([self.task.sign(name) * float(found[name]) for name in self.task.objectives])
+        found = self._asked(self.task.objectives, [self._values(shares)])[0]
+        return np.array([self.task.sign(name) * found[name] for name in self.task.objectives])
+
+    def _asked(self, names: Iterable[str], designs: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
+        """Some of the criteria of some designs."""
+        run, listed = self.run_of(names), list(names)
+        columns = {name: [design[name] for design in designs] for name in self.task.axes}
+        if self.batch is not None and run.covers(self.batch, columns).all():
+            found = run.many(self.batch, columns)
+            return [{name: float(found[name][place]) for name in listed} for place in range(len(designs))]
+        assert isinstance(self.task.build, Model)
+        answers = [run(changed(self.task.build, design)) for design in designs]
+        return [{name: float(each[name]) for name in listed} for each in answers]
 
     def run_of(self, names: Any) -> CriteriaRun:
         """The question for some of the criteria alone."""
         assert isinstance(self.task.run, CriteriaRun)
         return self.task.run.of(names)
-
-    def _model(self, shares: Array) -> Model:
-        assert isinstance(self.task.build, Model)
-        return changed(self.task.build, self._values(shares))
 
     def _values(self, shares: Array) -> dict[str, Any]:
         return {name: values[0] for name, values in self.task.columns(shares[None]).items()}
@@ -160,21 +174,46 @@ class Refinement:
         """Figures with their derivatives by the shares: at the points that matter, and of all other criteria."""
         key = shares.tobytes()
         if key not in self._known:
-            around, scale = self._around(shares), self._scale(shares)
+            around, scale = self.around(shares), self._scale(shares)
             exact = {name: each.values(around) for name, each in self.active.items()}
             told = {name: (values, slopes * scale) for name, (values, slopes) in exact.items()}
-            self._known = {key: (told, self._differences(around, scale))}
+            self._known = {key: (told, self._differences(shares, scale))}
         return self._known[key]  # type: ignore[no-any-return]
 
-    def _around(self, shares: Array) -> Around:
+    def alone(self, shares: Array) -> Around:
+        """A design without those about it."""
         assert isinstance(self.task.build, Model)
-        values, sides = self._values(shares), {}
+        return Around(self.task.build, self._designs([self._values(shares)])[0], {})
+
+    def around(self, shares: Array) -> Around:
+        """A design and those about it, two a parameter."""
+        assert isinstance(self.task.build, Model)
+        values, steps = self._about(shares)
+        centre, *sides = self._designs(values)
+        pairs = zip(self.free, sides[::2], sides[1::2], steps, strict=True)
+        return Around(self.task.build, centre, {name: (low, high, step) for (_, name), low, high, step in pairs})
+
+    def _about(self, shares: Array) -> tuple[list[dict[str, Any]], list[float]]:
+        """The values of a design and of two designs about it for each parameter, and how far these are apart."""
+        values = self._values(shares)
+        found, steps = [values], []
         for _, name in self.free:
             axis = self.task.axes[name]
             side = SIDE * abs(float(values[name])) or SIDE * (axis.high - axis.low)
-            ends = [changed(self.task.build, values | {name: float(values[name]) + d * side}) for d in (-1.0, 1.0)]
-            sides[name] = (ends[0], ends[1], 2 * side)
-        return Around(changed(self.task.build, values), sides)
+            ends = [max(axis.low, float(values[name]) - side), min(axis.high, float(values[name]) + side)]
+            found += [{**values, name: end} for end in ends]
+            steps.append(ends[1] - ends[0])
+        return found, steps
+
+    def _designs(self, values: Sequence[dict[str, Any]]) -> list[Design]:
+        """Designs by their values: through the numbers of a batch, or built."""
+        assert isinstance(self.task.build, Model)
+        columns = {name: np.array([float(each[name]) for each in values]) for _, name in self.free}
+        batch = self.batch if len(self.free) == len(self.task.axes) else None
+        if batch is not None and self.run_of(self.task.wanted).covers(batch, columns).all():
+            numbers = Numbers(batch, columns, self._states)
+            return [Numbered(numbers, place) for place in range(len(values))]
+        return [Built(changed(self.task.build, each)) for each in values]
 
     def _scale(self, shares: Array) -> Array:
         """How a value changes with its share."""
@@ -185,17 +224,14 @@ class Refinement:
             rates.append(float(values[name]) * np.log(axis.high / axis.low) if axis.log else axis.high - axis.low)
         return np.array(rates)
 
-    def _differences(self, around: Around, scale: Array) -> dict[str, tuple[float, Array]]:
+    def _differences(self, shares: Array, scale: Array) -> dict[str, tuple[float, Array]]:
         if not self.others:
             return {}
-        run = self.run_of(self.others)
-        own = run(around.model)
-        ends = [(run(low), run(high), step) for low, high, step in around.sides.values()]
+        values, steps = self._about(shares)
+        own, *sides = self._asked(self.others, values)
+        pairs = list(zip(sides[::2], sides[1::2], steps, strict=True))
         return {
-            name: (
-                float(own[name]),
-                np.array([(float(high[name]) - float(low[name])) / step for low, high, step in ends]) * scale,
-            )
+            name: (own[name], np.array([(high[name] - low[name]) / step for low, high, step in pairs]) * scale)
             for name in self.others
         }
 
