@@ -171,7 +171,7 @@ def absorber_task(model: Model, own: Factors, given: Mapping[str, Any]) -> Task:
 def criteria_of(model: Model) -> CriteriaRun:
     """The criteria of absorbers: worst gearbox-input acceleration at low and high speed, travel, space."""
     (low, high), springs = model.operation.speed, list(model.landmarks.springs)
-    split = min(SPLIT * model.operation.idle, 0.5 * (low + high))
+    split = split_of(model)
     ranges = {"low_speed": (low, split), "high_speed": (split, high)}
     worst = {"of": "worst", "figure": "acceleration_swing"}
     criteria: dict[str, Any] = {
@@ -185,6 +185,11 @@ def criteria_of(model: Model) -> CriteriaRun:
     criteria["space"] = {"of": "whole", "figure": "inertia"}
     ask = {"worst": {"analysis": "envelope", "loads": LOADS}, "whole": {"analysis": "inertia"}}
     return CriteriaRun.model_validate({"analysis": "criteria", "ask": ask, "criteria": criteria})
+
+
+def split_of(model: Model) -> float:
+    """Where low speeds end [rad/s]: at 5/3 of idle, or in the middle of the range where that is less."""
+    return min(SPLIT * model.operation.idle, 0.5 * sum(model.operation.speed))
 
 
 def axes_of(model: Model, factors: Factors) -> dict[str, Axis]:
