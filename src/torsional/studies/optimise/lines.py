@@ -72,11 +72,10 @@ class Built:
 
 @dataclass(frozen=True)
 class Numbers:
-    """Designs of a ``batch`` by their ``columns``, found together; ``states`` keeps what all designs share."""
+    """Designs of a ``batch`` by their ``columns``, found together."""
 
     batch: Batch
     columns: Mapping[str, Any]
-    states: dict[Any, Any]
     known: dict[Any, Any] = field(default_factory=dict)
 
     def gear(self, gear: str) -> tuple[System, dict[str, Array], dict[int, Array]]:
@@ -94,9 +93,7 @@ class Numbers:
         key = gear, own.tobytes()
         if key not in self.known:
             system, tables, laws = self.gear(gear)
-            if key not in self.states:
-                self.states[key] = mean_state(self.batch.model, system, own)
-            state: OperatingPoint = self.states[key]
+            state = self.batch.state(gear, own)
             count = len(next(iter(tables.values())))
             angle, tangent = (np.repeat(values[None], count, axis=0) for values in (state.angle, state.stiffness))
             for place, law in enumerate(system.connections.laws):

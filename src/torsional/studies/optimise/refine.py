@@ -89,7 +89,6 @@ class Refinement:
     batch: Batch | None = None
     active: dict[str, Active] = field(default_factory=dict)
     _known: dict[bytes, Any] = field(default_factory=dict)
-    _states: dict[Any, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         task = self.task
@@ -211,7 +210,7 @@ class Refinement:
         columns = {name: np.array([float(each[name]) for each in values]) for _, name in self.free}
         batch = self.batch if len(self.free) == len(self.task.axes) else None
         if batch is not None and self.run_of(self.task.wanted).covers(batch, columns).all():
-            numbers = Numbers(batch, columns, self._states)
+            numbers = Numbers(batch, columns)
             return [Numbered(numbers, place) for place in range(len(values))]
         return [Built(changed(self.task.build, each)) for each in values]
 

@@ -15,7 +15,7 @@ from torsional.files.edit import changed
 from torsional.laws.hinges import hinge_slopes, hinge_tangents
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray, IntArray
-from torsional.solvers.equilibrium import linearize
+from torsional.solvers.equilibrium import OperatingPoint, linearize
 from torsional.solvers.operating import mean_state, torque_places
 from torsional.solvers.variants import NUMBERS, Loading, Variants
 from torsional.studies.sweeps.designs import Designs, Values
@@ -113,6 +113,14 @@ class Batch:
                 own["stiffness"][place] = slope[design]
             masses = replace(linear.masses, inertia=tables["inertia"][design])
             yield replace(linear.with_connections(**own), masses=masses)
+
+    def state(self, gear: str, torques: Array) -> OperatingPoint:
+        """The mean states [Nm] of the system that stands for all; their torques are those of every design."""
+        key = "state", gear, torques.tobytes()
+        if key not in self._kept:
+            self._kept[key] = mean_state(self.model, self._system(gear), torques)
+        found: OperatingPoint = self._kept[key]
+        return found
 
     def _variants(self, gear: str, fit: Fit, asked: Asked) -> Variants:
         fields, masses, laws = self._varied(gear, fit)

@@ -13,7 +13,6 @@ from torsional.laws import Hinges
 from torsional.laws.hinges import hinge_angles
 from torsional.model import Model
 from torsional.numerics.arrays import Array, ComplexArray
-from torsional.solvers.operating import mean_state
 from torsional.studies.down_speeding import half_swing, travels
 from torsional.studies.sweeps.batch import Asked, Batch
 from torsional.studies.swinging import way
@@ -61,16 +60,16 @@ class Envelope:
         """Largest twist, reach and loss of one spring, (designs,) each."""
         system, tables, laws = self.batch.numbers(gear, columns)
         place = system.connections.names.index(name)
-        mean = self._mean(system, place, laws.get(place)).reshape(-1, *self.torque.shape)
+        mean = self._mean(gear, system, place, laws.get(place)).reshape(-1, *self.torque.shape)
         largest = (np.abs(mean) + np.abs(swing).sum(axis=-1)).max(axis=(1, 2))
         omega = np.multiply.outer(self.speeds, self.orders)
         lost = (np.abs(omega * swing) ** 2).sum(axis=-1).max(axis=(1, 2))
         power = 0.5 * tables["damping"][:, place] * lost
         return largest, largest / self._way(name, laws.get(place)), power
 
-    def _mean(self, system: System, place: int, rows: Array | None) -> Array:
+    def _mean(self, gear: str, system: System, place: int, rows: Array | None) -> Array:
         """Mean twists (designs or 1, states); statics give every design the same mean torques."""
-        state = mean_state(self.batch.model, system, self.torque.ravel())
+        state = self.batch.state(gear, self.torque.ravel())
         if rows is None or not isinstance(system.connections.laws[place], Hinges):
             return np.asarray(state.angle[None, :, place])
         return hinge_angles(rows, state.torque[:, place])
