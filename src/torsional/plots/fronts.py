@@ -143,7 +143,7 @@ def plot_fronts(data: xr.Dataset) -> Figure:
 
 def _worst(ends: Sequence[float]) -> str:
     low, high = (float(v) for v in style.shown(np.array(ends), "speed"))
-    return f"worst of {low:.0f} to {high:.0f} rpm, all gears [rad/s²], half peak-to-peak"
+    return f"worst of {low:.0f} to {high:.0f} rpm, all gears,\ngearbox input [rad/s²], half peak-to-peak"
 
 
 def plain_decades(axes: Axes, which: str) -> None:
