@@ -141,4 +141,6 @@ def chosen_table(found: xr.Dataset, asked: Asked) -> Table:
 
 
 def _cells(values: xr.DataArray, quantity: str) -> list[str]:
-    return [show(float(v), quantity) if quantity and np.isfinite(float(v)) else str(v) for v in values.values]
+    if values.dtype.kind != "f":
+        return list(map(str, values.values))
+    return [show(float(v), quantity or "number") if np.isfinite(v) else "-" for v in values.values]

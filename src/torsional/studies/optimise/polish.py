@@ -32,7 +32,7 @@ def refined(task: Task, method: Method, between: int, kept: Generations) -> str:
         if len(task.objectives) > 1:
             polish.knee()
     except ModelError as error:
-        return str(error)
+        return error.problem if error.where == "refine" else str(error)
     found = polish.shares[len(shares) :]
     if not len(found):
         return "gradients found nothing better"
