@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.signals import listening
 from tests.studies.test_sweep_plan import ROOT, planned
 
 import torsional as tv
@@ -84,11 +85,11 @@ def test_a_bad_plan_leaves_no_folder(torsional: Run, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="groups of processes are sent signals otherwise there")
 def test_ctrl_c_keeps_what_was_worked_out(tmp_path: Path) -> None:
-    path = planned(tmp_path, "{analysis: map, torques: 13}")
-    text = path.read_text(encoding="utf-8").replace("points: 3", "points: 400")
+    path = planned(tmp_path, "{analysis: map, torques: 40}")
+    text = path.read_text(encoding="utf-8").replace("points: 3", "points: 90")  # too few to be asked together
     path.write_text(text.replace("count: 1", "count: 2"), encoding="utf-8")
     command = subprocess.Popen(
-        [sys.executable, "-m", "torsional", "sweep", str(path)],
+        [sys.executable, "-m", "torsional", "sweep", str(path)], preexec_fn=listening,
         cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     deadline = time.monotonic() + 60

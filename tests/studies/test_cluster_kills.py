@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from tests.signals import listening
 from tests.studies.test_sweep import ENDS, TRUCK, answered, counted, made, same
 from tests.studies.test_sweep_kills import CHUNK, COUNT, chunks, designs, until, workers
 
@@ -189,7 +190,7 @@ def test_ctrl_c_ends_driver_and_local_cluster_at_once_and_quietly(tmp_path: Path
         "run: {analysis: transient, scenario: tip_in}\nchunk: 1\nworkers: {kind: local_cluster, count: 2}\n"
     )
     command = subprocess.Popen(
-        [sys.executable, "-m", "torsional", "sweep", str(plan)],
+        [sys.executable, "-m", "torsional", "sweep", str(plan)], preexec_fn=listening,
         cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     waited(lambda: chunks(tmp_path / "plan.sweep") > 2 or command.poll() is not None)

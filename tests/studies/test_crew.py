@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.signals import listening
 
 from torsional.errors import ModelError
 from torsional.studies.crew import NOWHERE, Crew, Lost, marked
@@ -106,7 +107,7 @@ def test_each_has_one_thread_and_the_environment_stays(monkeypatch: pytest.Monke
 def begun(*paths: Path) -> subprocess.Popen[str]:
     """A script with two processes that are at work."""
     script = subprocess.Popen(
-        [sys.executable, "-c", SCRIPT, *map(str, paths)],
+        [sys.executable, "-c", SCRIPT, *map(str, paths)], preexec_fn=listening,
         cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     latest = time.monotonic() + 60
