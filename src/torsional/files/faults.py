@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from pydantic import ValidationError
@@ -53,6 +54,23 @@ class SchemaError(ModelError):
     def located(self, *, file: str = "", prefix: str = "") -> ModelError:
         """The same findings with the file named and the key paths prefixed."""
         return SchemaError([error.located(prefix=prefix) for error in self.errors], file or self.file)
+
+
+def placed(error: ModelError, tree: Tree) -> ModelError:
+    """The error with file and line."""
+    told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
+    return ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told)
+
+
+@contextmanager
+def told_of(tree: Tree) -> Iterator[None]:
+    """What is found wrong with the file of a tree is told with its name and lines; other files keep theirs."""
+    try:
+        yield
+    except ValidationError as error:
+        raise translated(error, tree) from None
+    except ModelError as error:
+        raise error if error.file else placed(error, tree) from None
 
 
 def translated(error: ValidationError, tree: Tree) -> ModelError:

@@ -16,7 +16,7 @@ from torsional.engine.excitation import checked_nodes
 from torsional.errors import ModelError, nearest
 from torsional.files.blocks import Machine, machine
 from torsional.files.engine_parts import engine
-from torsional.files.faults import translated
+from torsional.files.faults import placed, translated
 from torsional.files.opening import TABLE_BYTES, read_text
 from torsional.files.reader import Tree, read_tree, resolve_reference
 from torsional.files.schema import ModelFile
@@ -70,7 +70,7 @@ def validated(tree: Tree) -> ModelFile:
     except ValidationError as error:
         raise translated(error, tree) from None
     except ModelError as error:
-        raise _placed(error, tree) from None
+        raise placed(error, tree) from None
     return file
 
 
@@ -85,13 +85,7 @@ def _model(tree: Tree, motor: Engine | None = None) -> Model:
     try:
         return _built(file, tree.data, motor)
     except ModelError as error:
-        raise _placed(error, tree) from None
-
-
-def _placed(error: ModelError, tree: Tree) -> ModelError:
-    """The error with file and line."""
-    told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
-    return ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told)
+        raise placed(error, tree) from None
 
 
 def _built(file: ModelFile, document: Mapping[str, Any], known: Engine | None) -> Model:

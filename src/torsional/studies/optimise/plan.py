@@ -8,18 +8,18 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, Field
 
 from torsional.arguments import checked
 from torsional.errors import ModelError, nearest
-from torsional.files.faults import translated
+from torsional.files.faults import told_of
 from torsional.files.load import load_model
 from torsional.files.reader import read_tree
 from torsional.files.schema.fields import Block, only_version
 from torsional.model import Model
 from torsional.studies.optimise.task import Limit, Method, Task
 from torsional.studies.sweeps.criteria import CriteriaRun
-from torsional.studies.sweeps.plan import Parameter, asked_of, axis_of
+from torsional.studies.sweeps.plan import Parameter, asked_of, axes_of
 from torsional.units import quoted, read
 
 VERSION, KEY = 1, "torsional_optimise"
@@ -83,27 +83,15 @@ def load_optimisation(path: str | os.PathLike[str]) -> Asked:
     if KEY not in tree.data:
         remedy = "torsional sweep takes this plan" if "torsional_sweep" in tree.data else f"write '{KEY}: {VERSION}'"
         raise ModelError(f"the key '{KEY}' is missing", remedy=remedy, file=tree.file)
-    try:
+    with told_of(tree):
         file = OptimiseFile.model_validate(tree.data)
         return _asked(file, load_model(folder / file.model), folder, Path(path).stem)
-    except ValidationError as error:
-        raise translated(error, tree) from None
-    except ModelError as error:
-        if error.file:
-            raise
-        told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
-        raise ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told) from None
 
 
 def _asked(file: OptimiseFile, model: Model, folder: Path, stem: str) -> Asked:
     run = asked_of(file.run, folder, model)
     assert isinstance(run, CriteriaRun)
-    axes = {}
-    for number, given in enumerate(file.over):
-        if given.parameter in axes:
-            where = f"over.{number}"
-            raise ModelError("the parameter is named twice", where=where, found=quoted(given.parameter))
-        axes[given.parameter] = axis_of(given, f"over.{number}", model, "latin_hypercube")
+    axes = axes_of(file.over, model, "latin_hypercube")
     for number, name in enumerate(file.maximise):
         if name not in file.objectives:
             told = {"found": quoted(name), "remedy": nearest(name, file.objectives)}

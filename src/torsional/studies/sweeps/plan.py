@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import copy
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, Field
 
 from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.edit import changed, put
-from torsional.files.faults import translated
+from torsional.files.faults import told_of
 from torsional.files.load import load_model
 from torsional.files.opening import TABLE_BYTES, read_text
 from torsional.files.reader import read_tree
@@ -102,18 +103,11 @@ def load_plan(path: str | os.PathLike[str]) -> Plan:
     if KEY not in tree.data:
         remedy = "is this a model file?" if "torsional" in tree.data else f"write '{KEY}: {VERSION}'"
         raise ModelError(f"the key '{KEY}' is missing", remedy=remedy, file=tree.file)
-    try:
+    with told_of(tree):
         file = SweepFile.model_validate(tree.data)
         model = load_model(folder / file.model)
         designs = _designs(file, model, folder)
         run = asked_of(file.run, folder, model)
-    except ValidationError as error:
-        raise translated(error, tree) from None
-    except ModelError as error:
-        if error.file:
-            raise
-        told = {"found": error.found, "allowed": error.allowed, "remedy": error.remedy}
-        raise ModelError(error.problem, where=tree.place(error.where), file=tree.file, **told) from None
     return Plan(file.name or Path(path).stem, Work(model, designs, run), file.chunk, file.workers)
 
 
@@ -125,11 +119,7 @@ def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
         return table(_columns(folder / choice.file, model))
     if not file.over:
         raise ModelError("a sweep needs a parameter to vary", where="over")
-    axes = {}
-    for number, given in enumerate(file.over):
-        if given.parameter in axes:
-            raise ModelError("the parameter is named twice", where=f"over.{number}", found=quoted(given.parameter))
-        axes[given.parameter] = axis_of(given, f"over.{number}", model, choice.method)
+    axes = axes_of(file.over, model, choice.method)
     if choice.method == "grid":
         return grid({path: axis.levels for path, axis in axes.items()})
     if choice.count is None:
@@ -137,7 +127,17 @@ def _designs(file: SweepFile, model: Model, folder: Path) -> Designs:
     return sampled(choice.method, axes, choice.count, choice.seed)
 
 
-def axis_of(given: Parameter, where: str, model: Model, method: str) -> Axis:
+def axes_of(over: Sequence[Parameter], model: Model, method: str) -> dict[str, Axis]:
+    """What each parameter may be, in SI; ModelError, with its place, for one that is named twice or cannot be."""
+    axes: dict[str, Axis] = {}
+    for number, given in enumerate(over):
+        if given.parameter in axes:
+            raise ModelError("the parameter is named twice", where=f"over.{number}", found=quoted(given.parameter))
+        axes[given.parameter] = _axis(given, f"over.{number}", model, method)
+    return axes
+
+
+def _axis(given: Parameter, where: str, model: Model, method: str) -> Axis:
     """What a parameter of a plan may be, tried on the model."""
     path = given.parameter
     if given.values is not None:
