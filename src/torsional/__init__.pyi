@@ -7,6 +7,7 @@ from . import (
     errors as errors,
     files as files,
     laws as laws,
+    measurements as measurements,
     plots as plots,
     quantities as quantities,
     report as report,
@@ -78,6 +79,7 @@ from .laws import (
     contact_time as contact_time,
     hysteresis_loop as hysteresis_loop,
 )
+from .measurements import read_measurement as read_measurement
 from .model import Gear as Gear, Landmarks as Landmarks, Model as Model, Operation as Operation
 from .powertrain import Powertrain as Powertrain
 from .quantities import (

@@ -7,7 +7,10 @@ import itertools
 import os
 import re
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import BinaryIO
 
 from torsional.errors import ModelError, nearest
 from torsional.units import quoted
@@ -37,8 +40,30 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
     ModelError names the file for a missing, unreadable, empty or binary one, a folder, a device, UTF-16 and control
     characters.
     """
-    try:
+    with _named(path):
         return decoded(_read_bytes(Path(path), most))
+
+
+def read_bytes(path: str | os.PathLike[str], most: int) -> bytes:
+    """The bytes of a regular file of at most ``most``; ModelError names it for a missing or unreadable one, a folder
+    and a device."""
+    with _named(path):
+        return _read_bytes(Path(path), most)
+
+
+def first_bytes(path: str | os.PathLike[str], count: int, most: int) -> bytes:
+    """The first bytes of a regular file of at most ``most``; ModelError as for all of them."""
+    with _named(path), _opened(Path(path)) as file:
+        if os.fstat(file.fileno()).st_size > most:
+            raise _too_large(most)
+        return file.read(count)
+
+
+@contextmanager
+def _named(path: object) -> Iterator[None]:
+    """What goes wrong with a file is told with its name."""
+    try:
+        yield
     except ModelError as error:
         raise error.located(file=shown(path)) from None
     except OSError as error:
@@ -48,17 +73,27 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
         raise ModelError("this cannot be a file name", found=quoted(path), file=shown(path)) from None
 
 
-def _read_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a regular file; opened without blocking, so that a pipe put in its place cannot hang the reader."""
+@contextmanager
+def _opened(path: Path) -> Iterator[BinaryIO]:
+    """A regular file, opened without blocking, so that a pipe put in its place cannot hang the reader."""
     _refuse_irregular(path)
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as file:
         if not stat.S_ISREG(os.fstat(handle).st_mode):
             raise ModelError("this is not a regular file")
+        yield file
+
+
+def _read_bytes(path: Path, most: int) -> bytes:
+    with _opened(path) as file:
         data = file.read(most + 1)
     if len(data) > most:
-        raise ModelError("the file is too large", allowed=f"at most {most:,} bytes".replace(",", " "))
+        raise _too_large(most)
     return data
+
+
+def _too_large(most: int) -> ModelError:
+    return ModelError("the file is too large", allowed=f"at most {most:,} bytes".replace(",", " "))
 
 
 def _refuse_irregular(path: Path) -> None:
