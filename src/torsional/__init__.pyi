@@ -80,6 +80,21 @@ from .laws import (
     hysteresis_loop as hysteresis_loop,
 )
 from .measurements import read_measurement as read_measurement
+from .measurements.encoders import (
+    shaft_from_counter as shaft_from_counter,
+    shaft_from_encoder as shaft_from_encoder,
+    shaft_from_speed as shaft_from_speed,
+)
+from .measurements.orders import (
+    in_convention as in_convention,
+    torsional_angle as torsional_angle,
+    track_orders as track_orders,
+)
+from .measurements.pulses import pulse_times as pulse_times
+from .measurements.resampling import resampled as resampled
+from .measurements.rotation import mean_rotation as mean_rotation
+from .measurements.shafts import shaft_from_pulses as shaft_from_pulses, tooth_pitch as tooth_pitch
+from .measurements.spectrograms import speed_spectrogram as speed_spectrogram
 from .model import Gear as Gear, Landmarks as Landmarks, Model as Model, Operation as Operation
 from .powertrain import Powertrain as Powertrain
 from .quantities import (

@@ -52,7 +52,7 @@ def order_tracking(
     if (np.diff(turned) <= 0).any():
         remedy = "use the mean angle, run.crank_angle, or the stretch of time in which it turns"
         raise ModelError("the crank stands or turns back", where="crank_angle", remedy=remedy)
-    span, count = CYCLE * cycles, max(int(np.ceil(order.max() * 2 * cycles * SAMPLES)), 64)
+    span, count = CYCLE * cycles, samples_a_window(float(order.max()), cycles)
     first = np.ceil(turned[0] / CYCLE - 1e-9) * CYCLE
     starts = np.arange(first, turned[-1] - span + 1e-9 * span, span * (1.0 - overlap))
     if not starts.size:
@@ -71,6 +71,11 @@ def order_tracking(
     coords = {dim: values[dim] for dim in rest if dim in values.coords} | {"time": middle, "order": order}
     attrs = {**signal.attrs, "amplitude": "complex 0-peak"}
     return xr.DataArray(picked, dims=("time", *rest, "order"), coords=coords, name=signal.name, attrs=attrs)
+
+
+def samples_a_window(highest: float, cycles: int) -> int:
+    """Even angles in a window of so many cycles of 720° whose highest order this is."""
+    return max(int(np.ceil(highest * 2 * cycles * SAMPLES)), 64)
 
 
 def _checked(order: Array, cycles: int, window: str) -> Array:
