@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -91,45 +91,40 @@ def track_orders(
     given, around = _given(signals, bool(shafts)), shafts or {}
     turning = {name: torsional_angle(shaft, rotation) for name, shaft in around.items()}
     columns = [column for signal in given.values() for column in _columns(signal)]
-    every = [*columns, *turning.values()]
-    if not every:
-        raise ModelError("neither signals nor shafts were given", where="track_orders")
     order = np.atleast_1d(np.asarray(orders, dtype=float))
-    per_turn = int(np.ceil(samples_a_window(float(order.max()), cycles) / (2 * cycles)))
-    span = common_span(rotation, [raster(signal)[0] for signal in every], per_turn)
-    even = [resampled(signal, rotation, per_turn, span=span) for signal in every]
+    even = _at_even_angles([*columns, *turning.values()], rotation, order, cycles)
     found = [_tracked(each, order, cycles, window, overlap) for each in even]
     middle = found[0].time.values
     speed = np.interp(middle, rotation.time.values, rotation.speed.values)
-    variables: dict[str, Variable] = {}
-    for name, signal in given.items():
-        parts = [found.pop(0).values for _ in _columns(signal)]
-        variables[name] = _laid(signal, parts)
-    coordinates: dict[str, Any] = {
+    at: dict[str, Any] = {
         "speed": (speed, "speed"),
         "order": (order, "engine_order"),
         "time": (middle, "time", "speed"),
     }
-    for signal in given.values():
-        coordinates |= {dim: (signal[dim].values, "") for dim in _places(signal)}
+    parts = iter([each.values for each in found])
+    variables = {name: _laid(signal, [next(parts) for _ in _columns(signal)]) for name, signal in given.items()}
+    at |= {dim: (signal[dim].values, "") for signal in given.values() for dim in _places(signal)}
     if around:
-        variables["angle"] = (("speed", "order", "node"), np.stack([each.values for each in found], axis=-1), "angle")
         noise = [_noise(shaft, turning[name], speed, cycles, window) for name, shaft in around.items()]
+        variables["angle"] = (("speed", "order", "node"), np.stack(list(parts), axis=-1), "angle")
         variables["noise"] = (("speed", "node"), np.stack(noise, axis=-1), "angle")
-        coordinates["node"] = (np.array(list(around)), "")
-    data = dataset(
-        variables,
-        coordinates,
-        {name: str(signal.attrs.get("long_name", name)) for name, signal in given.items()},
-        analysis="order tracking",
-        amplitude="complex 0-peak",
-        cycles=cycles,
-        window=window,
-        overlap=overlap,
-        interpolation_error=max(float(each.attrs["interpolation_error"]) for each in even),
-        reference=str(rotation.attrs.get("shaft", "")),
-    )
-    return _with_units(data, given)
+        at["node"] = (np.array(list(around)), "")
+    settings: dict[str, Any] = {"cycles": cycles, "window": window, "overlap": overlap, "amplitude": "complex 0-peak"}
+    settings["interpolation_error"] = max(float(each.attrs["interpolation_error"]) for each in even)
+    settings["reference"] = str(rotation.attrs.get("shaft", ""))
+    words = {name: str(signal.attrs.get("long_name", name)) for name, signal in given.items()}
+    return _with_units(dataset(variables, at, words, analysis="order tracking", **settings), given)
+
+
+def _at_even_angles(
+    signals: Sequence[xr.DataArray], rotation: xr.Dataset, order: Array, cycles: int
+) -> list[xr.DataArray]:
+    """All signals at the same even angles, fine enough for the highest order."""
+    if not signals:
+        raise ModelError("neither signals nor shafts were given", where="track_orders")
+    per_turn = int(np.ceil(samples_a_window(float(order.max()), cycles) / (2 * cycles)))
+    span = common_span(rotation, [raster(signal)[0] for signal in signals], per_turn)
+    return [resampled(signal, rotation, per_turn, span=span) for signal in signals]
 
 
 def _given(signals: xr.Dataset | xr.DataArray | None, shafts: bool) -> dict[str, xr.DataArray]:

@@ -53,9 +53,9 @@ def resampled(
     Signal Processing 11 (1997) 187).  Where that has less than twelve samples a period of order ``per_turn``/16, it is
     first brought to a finer raster by a band-limited filter.  What lies above order ``per_turn``/2 is filtered off,
     lest it be folded below.  Attribute ``interpolation_error``: by what share order ``per_turn``/16 may come out
-    smaller at the highest speed.  Dimension ``crank_angle`` [rad], beginning with a multiple of 720°, within ``span`` [rad]
-    where that is given; coordinate ``time``.  Raises ModelError for a record with less than 2.56 samples a period of
-    order ``per_turn``/16, and for one that holds no whole cycle.
+    smaller at the highest speed.  Dimension ``crank_angle`` [rad], beginning with a multiple of 720°, within ``span``
+    [rad] where that is given; coordinate ``time``.  Raises ModelError for a record with less than 2.56 samples a
+    period of order ``per_turn``/16, and for one that holds no whole cycle.
 
     >>> import torsional as tv
     >>> t = np.arange(0.0, 4.0, 1e-3)
