@@ -18,9 +18,11 @@ from torsional.plots.region import plot_region
 from torsional.plots.scenario import plot_scenario
 from torsional.plots.sensitivity import plot_sensitivities
 from torsional.plots.solution import plot_loops, plot_signals, plot_solutions
+from torsional.plots.spectra import plot_spectrogram, plot_waterfall
 from torsional.plots.springs import plot_characteristic, plot_travel
 from torsional.plots.style import panels, save_png, save_svg
 from torsional.plots.sweeps import plot_sweep
+from torsional.plots.tracking import plot_rotation, plot_tracked_orders
 from torsional.plots.transient import plot_transient
 
 __all__ = [
@@ -51,13 +53,17 @@ __all__ = [
     "plot_region",
     "plot_regression",
     "plot_resonance_speeds",
+    "plot_rotation",
     "plot_scenario",
     "plot_sensitivities",
     "plot_signals",
     "plot_solutions",
+    "plot_spectrogram",
     "plot_sweep",
+    "plot_tracked_orders",
     "plot_transient",
     "plot_travel",
+    "plot_waterfall",
     "plot_work_precision",
     "save_png",
     "save_svg",
