@@ -68,9 +68,11 @@ def hinge_tangents(parameters: Array, torque: Array) -> Array:
         passed += corner[:, None] < torque
         met |= abs(corner[:, None] - torque) <= 1e-12 * abs(torque)
     found = _taken(slopes, passed)
-    for place in np.flatnonzero(met.any(axis=0)):  # what rounding makes of a corner, as one law tells it
-        rows = parameters[met[:, place]]
-        found[met[:, place], place] = hinge_slopes(rows, hinge_angles(rows, torque[place : place + 1]))[:, 0]
+    for value in np.unique(torque[met.any(axis=0)]):  # what rounding makes of a corner, as one law tells it
+        alike = torque == value
+        own = met[:, alike][:, 0]
+        rows = parameters[own]
+        found[np.ix_(own, alike)] = hinge_slopes(rows, hinge_angles(rows, np.array([value])))
     return found
 
 

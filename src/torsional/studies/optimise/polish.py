@@ -17,6 +17,8 @@ from torsional.studies.optimise.task import Limit, Method, Task
 
 KEPT = 10**7
 """Number of the first chunk that holds refined designs."""
+STARTS, APART = 4, 0.3
+"""Designs from which an end of a front is looked for, and how far apart they are as shares of some axis."""
 
 
 def refined(task: Task, method: Method, between: int, kept: Generations) -> str:
@@ -66,9 +68,10 @@ class Polish:
         self.batch = self.task.batch()
 
     def ends(self) -> None:
-        """Each objective alone."""
+        """Each objective alone, from designs that are best and unlike each other: there may be more than one valley."""
         for place, name in enumerate(self.task.objectives):
-            self._from(int(self.goals[:, place].argmin()), {name: 1.0}, self.task)
+            for start in unlike(self.shares[: self.searched], self.goals[: self.searched, place], STARTS):
+                self._from(start, {name: 1.0}, self.task)
 
     def between(self, count: int) -> None:
         """The second objective within limits of the first, evenly from end to end."""
@@ -103,6 +106,19 @@ class Polish:
         if not np.array_equal(known["shares"], start):
             self.shares = np.vstack([self.shares, known["shares"]])
             self.goals = np.vstack([self.goals, refinement.goals(known["shares"])])
+
+
+def unlike(shares: Array, goal: Array, count: int) -> list[int]:
+    """Places of the best of designs, at most ``count``, whose shares of some axis differ by `APART` from one to another.
+
+    >>> unlike(np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.9]]), np.array([1.0, 2.0, 3.0]), 2)
+    [0, 2]
+    """
+    found: list[int] = []
+    for place in np.argsort(goal, kind="stable").tolist():
+        if len(found) < count and all(abs(shares[place] - shares[other]).max() >= APART for other in found):
+            found.append(place)
+    return found
 
 
 def _both(one: Limit, other: Limit | None) -> Limit:
