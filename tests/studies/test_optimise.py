@@ -102,6 +102,20 @@ def test_one_objective_and_three() -> None:
     assert role(three, "best third") is not None and role(three, "knee") is not None
 
 
+def test_pendulums_are_tuned_above_their_order_and_keep_to_a_mass() -> None:
+    task = preset("best-pendulum", TRUCKS, {"mass": "5 kg"}).task
+    assert isinstance(task.build, Model)
+    pendulum: Any = task.build.components["pendulum"]
+    assert pendulum.order == pytest.approx(1.02 * 3) and task.axes["absorber.pendulum.mass"].high == 5.0
+    exact = preset("best-pendulum", TRUCKS, {"tuning": "1"}).task
+    assert isinstance(exact.build, Model)
+    assert exact.axes["absorber.pendulum.mass"].high == pytest.approx(1.5 * pendulum.mass)
+    ask = CriteriaRun.of(task.run, ["low_speed"])  # type: ignore[arg-type]
+    assert float(ask(exact.build).low_speed) < 0.8 * float(ask(task.build).low_speed)
+    with pytest.raises(ModelError, match="cannot be so light; found 1 kg"):
+        preset("best-pendulum", TRUCKS, {"mass": "1 kg"})
+
+
 def test_one_seed_gives_one_result() -> None:
     alone = found(method=Method(8, 3, 7))
     xr.testing.assert_identical(alone, found(method=Method(8, 3, 7)))

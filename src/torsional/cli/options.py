@@ -239,6 +239,13 @@ Travel = Annotated[
 Power = Annotated[
     str, _taking("--power", metavar="VALUE", help="Preset: most friction power at the resonance in W, or 0.5kW.")
 ]
+PendulumMass = Annotated[
+    str, _taking("--mass", metavar="VALUE", help="Preset best-pendulum: most mass in kg; default: 1.5 times its own.")
+]
+Tuning = Annotated[
+    str,
+    _taking("--tuning", metavar="RATIO", help="Preset best-pendulum: its order over the firing order; default: 1.02."),
+]
 AbsorberKind = Annotated[
     str, _taking("--absorber", metavar="NAME", help="Preset best-clutch-friction: smf, dmf, psva …; default: the own.")
 ]

@@ -101,6 +101,8 @@ def optimise(
     travel: o.Travel = "",
     power: o.Power = "",
     absorber: o.AbsorberKind = "",
+    mass: o.PendulumMass = "",
+    tuning: o.Tuning = "",
     population: o.Population = 0,
     generations: o.Generations = 0,
     seed: o.Seed = None,
@@ -117,7 +119,7 @@ def optimise(
     objectives, its knee, and how both compare with the nominal design.  Presets: best-dmf, best-clutch-friction,
     best-psva, best-tva, best-pendulum.  Stopped in the middle, --resume goes on.  -o takes a page, .html, too.
     """
-    limits = {"space": space, "travel": travel, "power": power, "absorber": absorber}
+    limits = {"space": space, "travel": travel, "power": power, "absorber": absorber, "mass": mass, "tuning": tuning}
     given = {name: value for name, value in limits.items() if value}
     return job(
         "optimise",

@@ -6,7 +6,8 @@ import json
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
 from torsional.studies.crew import NOWHERE, Crew, Lost
 from torsional.studies.optimise.task import Task
+from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.designs import table
 from torsional.studies.sweeps.store import Store, digest, written
 from torsional.studies.sweeps.sweep import ASIDE
@@ -41,6 +43,13 @@ class Answers:
         return (self.status == OK) & known.all(axis=0)
 
 
+class Job(Protocol):
+    """Something that a process of a search does, and keeps in the store under its own number."""
+
+    def worked(self, at: Bench) -> None:
+        """Do it with what the process has."""
+
+
 @dataclass(frozen=True)
 class Piece:
     """Some designs of a generation under the number of their chunk, those ``aside`` not to be tried."""
@@ -52,7 +61,12 @@ class Piece:
     @property
     def key(self) -> np.ndarray:
         """What tells these designs from others, as bytes."""
-        return np.frombuffer(digest({name: list(values) for name, values in self.columns.items()}).encode(), np.uint8)
+        return keyed({name: list(values) for name, values in self.columns.items()})
+
+    def worked(self, at: Bench) -> None:
+        """Ask the designs."""
+        work = at.task.work_on(table(self.columns), at.batch if at.designs >= MANY else None)
+        at.store.put(self.number, work.stretch(0, _length(self), self.aside) | {"designs": self.key})
 
 
 @dataclass
@@ -64,7 +78,7 @@ class Generations:
 
     task: Task
     store: Store
-    crew: Crew[Piece, None]
+    crew: Crew[Any, None]
     moved: Callable[[int], None]
     done: int = 0
     found: list[tuple[Columns, Answers]] = field(default_factory=list)
@@ -127,6 +141,11 @@ class Generations:
         return Counter({(number, at): times for number, at, times in told})
 
 
+def keyed(values: Any) -> np.ndarray:
+    """What tells plain values from others, as bytes."""
+    return np.frombuffer(digest(values).encode(), np.uint8)
+
+
 def _length(piece: Piece) -> int:
     return len(next(iter(piece.columns.values())))
 
@@ -164,17 +183,28 @@ def _refuse_arrays(shape: Mapping[str, Any]) -> None:
             raise ModelError("an objective is a single figure", where=name, found=found, remedy=remedy)
 
 
-_HERE: dict[str, Any] = {}
+@dataclass
+class Bench:
+    """What a process of a search works with; many ``designs`` that differ in numbers are asked together."""
+
+    task: Task
+    store: Store
+    designs: int
+
+    @cached_property
+    def batch(self) -> Batch | None:
+        """All designs that there may be, where they can be asked together."""
+        return self.task.batch()
+
+
+_HERE: list[Bench] = []
 
 
 def prepare(task: Task, store: Store, designs: int) -> None:
-    """What a process has to know; of many ``designs`` those that differ in numbers are asked together."""
-    _HERE["task"], _HERE["store"] = task, store
-    _HERE["batch"] = task.batch() if designs >= MANY else None
+    """What a process has to know."""
+    _HERE[:] = [Bench(task, store, designs)]
 
 
-def made(piece: Piece) -> None:
-    """Work on a piece and keep it."""
-    work = _HERE["task"].work_on(table(piece.columns), _HERE["batch"])
-    chunk = work.stretch(0, _length(piece), piece.aside)
-    _HERE["store"].put(piece.number, chunk | {"designs": piece.key})
+def made(job: Job) -> None:
+    """Do a job and keep what comes of it."""
+    job.worked(_HERE[0])

@@ -13,7 +13,7 @@ import xarray as xr
 
 from torsional.errors import ModelError
 from torsional.studies.crew import Crew
-from torsional.studies.optimise.generations import Generations, Piece, made, prepare
+from torsional.studies.optimise.generations import Generations, Job, made, prepare
 from torsional.studies.optimise.polish import refined
 from torsional.studies.optimise.result import told
 from torsional.studies.optimise.search import released, searched
@@ -85,7 +85,7 @@ def optimised(
         at = folder or stack.enter_context(tempfile.TemporaryDirectory(prefix="torsional-"))
         with writing(at):
             store = begun(task, method, at)
-            crew: Crew[Piece, None] = stack.enter_context(Crew(made, prepare, (task, store, total), processes))
+            crew: Crew[Job, None] = stack.enter_context(Crew(made, prepare, (task, store, total), processes))
             kept = Generations(task, store, crew, lambda done: progress(done, max(total, done)))
             return _worked(task, method, between, kept)
 

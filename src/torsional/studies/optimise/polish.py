@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array, IntArray
+from torsional.studies.crew import Lost
 from torsional.studies.optimise.front import front, knee
-from torsional.studies.optimise.generations import Generations
+from torsional.studies.optimise.generations import Bench, Generations, keyed
 from torsional.studies.optimise.refine import Refinement
 from torsional.studies.optimise.search import scored
 from torsional.studies.optimise.task import Limit, Method, Task
@@ -53,6 +54,29 @@ def feasible(task: Task, kept: Generations) -> tuple[Array, Array]:
     return np.concatenate(shares), np.concatenate(goals)
 
 
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A design by its ``shares``, from which the sum of objectives times ``weights`` is to be made smaller within
+    ``limits``; kept under its ``number``."""
+
+    number: int
+    shares: Array
+    weights: Mapping[str, float]
+    limits: Mapping[str, Limit]
+
+    @property
+    def key(self) -> np.ndarray:
+        """What tells this task from others, as bytes."""
+        limits = {name: [repr(limit.least), repr(limit.most)] for name, limit in self.limits.items()}
+        return keyed([self.shares.tolist(), dict(self.weights), limits])
+
+    def worked(self, at: Bench) -> None:
+        """Refine it: where gradients led, and the objectives there."""
+        refinement = Refinement(replace(at.task, limits=self.limits), self.weights, at.batch)
+        found = refinement.refined(self.shares)
+        at.store.put(self.number, {"start": self.key, "shares": found, "goals": refinement.goals(found)})
+
+
 @dataclass
 class Polish:
     """Designs by their ``shares`` and ``goals``, those from place ``searched`` on being refined ones."""
@@ -64,52 +88,59 @@ class Polish:
     searched: int
     number: int = KEPT
 
-    def __post_init__(self) -> None:
-        self.batch = self.task.batch()
-
     def ends(self) -> None:
         """Each objective alone, from designs that are best and unlike each other: there may be more than one valley."""
-        for place, name in enumerate(self.task.objectives):
-            for start in unlike(self.shares[: self.searched], self.goals[: self.searched, place], STARTS):
-                self._from(start, {name: 1.0}, self.task)
+        starts = [
+            self._start(place, {name: 1.0}, {})
+            for column, name in enumerate(self.task.objectives)
+            for place in unlike(self.shares, self.goals[:, column], STARTS)
+        ]
+        self._refine(starts)
 
     def between(self, count: int) -> None:
         """The second objective within limits of the first, evenly from end to end."""
         first, second = self.task.objectives
-        on = self.goals[self._front()][:, 0]
+        places, sign = self._front(), self.task.sign(first)
+        on, starts = self.goals[places][:, 0], []
         for level in np.linspace(on[0], on[-1], count + 2)[1:-1].tolist():
-            allowed = self.task.sign(first) * level
-            limit = Limit(most=allowed) if self.task.sign(first) > 0 else Limit(least=allowed)
-            narrower = replace(self.task, limits={**self.task.limits, first: _both(limit, self.task.limits.get(first))})
-            places = self._front()
-            near = [place for place in places if self.goals[place, 0] <= level]
-            self._from(int(near[-1]), {second: 1.0}, narrower)
+            limit = Limit(most=sign * level) if sign > 0 else Limit(least=sign * level)
+            near = places[np.flatnonzero(on <= level)[-1]]
+            starts.append(self._start(int(near), {second: 1.0}, {first: limit}))
+        self._refine(starts)
 
     def knee(self) -> None:
         """The sum of the objectives over their spans on the front."""
         places = self._front()
         spans = np.ptp(self.goals[places], axis=0)
         weights = {name: 1.0 / (span or 1.0) for name, span in zip(self.task.objectives, spans, strict=True)}
-        self._from(int(places[knee(self.goals[places])]), weights, self.task)
+        self._refine([self._start(int(places[knee(self.goals[places])]), weights, {})])
 
     def _front(self) -> IntArray:
         return front(self.goals)
 
-    def _from(self, place: int, weights: Mapping[str, float], task: Task) -> None:
-        """Refine one design, and take it up where that made it better."""
-        start, self.number = self.shares[place], self.number + 1
-        refinement = Refinement(task, weights, self.batch)
-        known = self.kept.store.get(self.number)
-        if known is None or not np.array_equal(known["start"], start):
-            known = {"start": start, "shares": refinement.refined(start)}
-            self.kept.store.put(self.number, known)
-        if not np.array_equal(known["shares"], start):
-            self.shares = np.vstack([self.shares, known["shares"]])
-            self.goals = np.vstack([self.goals, refinement.goals(known["shares"])])
+    def _start(self, place: int, weights: Mapping[str, float], narrower: Mapping[str, Limit]) -> Start:
+        own = self.task.limits
+        limits = {**own, **{name: _both(limit, own.get(name)) for name, limit in narrower.items()}}
+        self.number += 1
+        return Start(self.number, self.shares[place], weights, limits)
+
+    def _refine(self, starts: Sequence[Start]) -> None:
+        """Refine designs side by side, and take up those that were made better."""
+        for _, told in self.kept.crew.results([start for start in starts if self._known(start) is None]):
+            if isinstance(told, Lost):
+                raise ModelError("a process died while it refined a design", where="refine")
+        found = [(start, known) for start in starts if (known := self._known(start)) is not None]
+        better = [known for start, known in found if not np.array_equal(known["shares"], start.shares)]
+        self.shares = np.vstack([self.shares, *(known["shares"] for known in better)])
+        self.goals = np.vstack([self.goals, *(known["goals"] for known in better)])
+
+    def _known(self, start: Start) -> dict[str, np.ndarray] | None:
+        known = self.kept.store.get(start.number)
+        return known if known is not None and np.array_equal(known["start"], start.key) else None
 
 
 def unlike(shares: Array, goal: Array, count: int) -> list[int]:
-    """Places of the best of designs, at most ``count``, whose shares of some axis differ by `APART` from one to another.
+    """Places of the best of designs, at most ``count``: from one to another shares of some axis differ by `APART`.
 
     >>> unlike(np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.9]]), np.array([1.0, 2.0, 3.0]), 2)
     [0, 2]

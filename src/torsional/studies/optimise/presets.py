@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -12,6 +12,7 @@ from torsional.files.edit import changed
 from torsional.files.scaling import read_document, values_at
 from torsional.model import Model
 from torsional.studies.advice import concept
+from torsional.studies.answers import main_order
 from torsional.studies.concepts import OWN
 from torsional.studies.down_speeding import travels
 from torsional.studies.friction import washed
@@ -29,8 +30,12 @@ from torsional.units import RPM, read
 Factors = Mapping[str, tuple[float, float]]
 BODIES = (0.4, 2.0)
 """Inertia of a body, over its own."""
-LIGHT, HEAVY = (0.25, 4.0), (0.5, 4.0)
-"""Planets, tuned absorbers; pendulums, over their own."""
+LIGHT, HEAVY = (0.25, 4.0), (0.5, 1.5)
+"""Planets, tuned absorbers; pendulums, which have to find room in the flywheel, over their own."""
+TUNED = 1.02
+"""Order of pendulums over the firing order: on purpose above it, so that tolerances, wear and the fall of the order
+with the swing do not bring it below, where pendulums amplify (Newland, J. Eng. Ind. 86 (1964) 257)."""
+PENDULUM = "absorber.pendulum.mass"
 QUOTIENT = (0.72, 1.28)
 """Gear quotient over its own; above 0.98 there is nothing of a power split."""
 SPLIT = 5 / 3
@@ -41,7 +46,14 @@ FRICTIONS, VISCOUS = (0.002, 0.06), (0.1, 1.5)
 """Friction torque over the full-load peak, viscous damping of the clutch over its own."""
 NONE = 0.0004
 """Friction torque that stands for none, over the full-load peak."""
-QUANTITIES = {"space": "inertia", "travel": "relative_angle", "power": "power", "absorber": ""}
+QUANTITIES = {
+    "space": "inertia",
+    "travel": "relative_angle",
+    "power": "power",
+    "absorber": "",
+    "mass": "mass",
+    "tuning": "ratio",
+}
 """Options of presets with the quantities of their values."""
 _CLUTCH: Factors = {"clutch.stiffness": CLUTCH, "clutch.damping": FRICTION}
 
@@ -108,8 +120,17 @@ def _best_tva(trucks: Trucks, given: Mapping[str, Any]) -> Task:
 
 
 def _best_pendulum(trucks: Trucks, given: Mapping[str, Any]) -> Task:
-    own = {**_flywheels(trucks.pendulum), "absorber.pendulum.mass": HEAVY}
-    return absorber_task(trucks.pendulum, own, given)
+    order = given.get("tuning", TUNED) * main_order(trucks.pendulum)
+    model = changed(trucks.pendulum, {"absorber.pendulum.order": order})
+    task = absorber_task(model, {**_flywheels(model), PENDULUM: HEAVY}, given)
+    if "mass" not in given:
+        return task
+    low, most = task.axes[PENDULUM].low, given["mass"]
+    if most <= low:
+        raise ModelError(
+            "the pendulums cannot be so light", where="--mass", found=f"{most:g} kg", allowed=f"> {low:g} kg"
+        )
+    return replace(task, axes={**task.axes, PENDULUM: Axis(low=low, high=most, log=True)})
 
 
 def _best_friction(trucks: Trucks, given: Mapping[str, Any]) -> Task:
@@ -139,7 +160,7 @@ PRESETS = {
     "best-tva": Preset("a tuned absorber, its flywheels, springs and clutch", ("space", "travel"), _best_tva),
     "best-pendulum": Preset(
         "pendulum mass, flywheels, springs and clutch; the swing keeps to 60 % of the pendulum's way",
-        ("space", "travel"),
+        ("space", "travel", "mass", "tuning"),
         _best_pendulum,
     ),
 }
