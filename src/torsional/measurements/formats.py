@@ -29,7 +29,8 @@ class Format:
 FORMATS: Mapping[str, Format] = MappingProxyType(
     {
         "mdf": Format("MDF 4", (".mf4", ".mdf"), "mdf", (b"MDF     ", b"UnFinMF ")),
-        "mat73": Format("MATLAB 7.3", (".mat",), "mat_hdf5", (b"MATLAB 7.3 MAT-file", b"\x89HDF\r\n\x1a\n")),
+        "mat73": Format("MATLAB 7.3", (".mat",), "mat_hdf5", (b"MATLAB 7.3 MAT-file",)),
+        "netcdf": Format("netCDF 4", (".nc", ".nc4"), "results_file", (b"\x89HDF\r\n\x1a\n",)),
         "mat": Format("MATLAB 5", (".mat",), "mat", (b"MATLAB 5.0 MAT-file",)),
         "parquet": Format("Parquet", (".parquet", ".pq"), "parquet", (b"PAR1",)),
         "uff": Format("UFF 58", (".uff", ".unv", ".bunv"), "uff"),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import logging
 import os
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.opening import first_bytes, shown
 from torsional.measurements.formats import HEAD, Format, format_of
-from torsional.measurements.recording import Found, recording
+from torsional.measurements.recording import Found, printable, recording
 
 BYTES = 8_000_000_000
 
@@ -53,8 +54,8 @@ def read_measurement(path: str | os.PathLike[str]) -> xr.Dataset:
     except Exception as error:
         # A last resort against defects of the libraries that read the formats: damage must end in a sentence.
         problem = f"the file cannot be read as {form.words}"
-        told = {"found": f"{type(error).__name__}: {error}"[:160], "remedy": "is it cut or broken?"}
-        raise ModelError(problem, file=shown(path), **told) from None
+        told = {"found": printable(" ".join(str(error).split())[:120]) or type(error).__name__}
+        raise ModelError(problem, remedy="is it cut or broken?", file=shown(path), **told) from None
 
 
 def _form(file: Path) -> Format:
@@ -65,13 +66,13 @@ def _form(file: Path) -> Format:
         raise error.located(file=shown(file)) from None
 
 
-@contextmanager
+@contextlib.contextmanager
 def silenced() -> Iterator[None]:
-    """What libraries that read and write files warn of and log is not the user's business: errors are."""
+    """What libraries that read and write files warn of, log and print is not the user's business: errors are."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
             yield
     finally:

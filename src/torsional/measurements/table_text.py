@@ -64,7 +64,7 @@ def _headed(header: list[str], lines: list[str], separator: str) -> tuple[list[s
     if all(_NUMBER.fullmatch(cell) for cell in header):
         remedy = "write a first line such as 'time [s],n_mot [rpm]'"
         raise ModelError("the table has no header with names", where="line 1", found=quoted(lines[0]), remedy=remedy)
-    pairs = [_name_and_unit(cell) for cell in header]
+    pairs = [name_and_unit(cell) for cell in header]
     names, units = [name for name, _ in pairs], [unit for _, unit in pairs]
     below = next(csv.reader(lines[1:2], delimiter=separator), [])
     if any(units) or len(below) != len(header) or any(_NUMBER.fullmatch(cell.replace(",", ".")) for cell in below):
@@ -74,10 +74,10 @@ def _headed(header: list[str], lines: list[str], separator: str) -> tuple[list[s
     return names, [cell.strip().strip("[]()") for cell in below], 1
 
 
-def _name_and_unit(cell: str) -> tuple[str, str]:
+def name_and_unit(cell: str) -> tuple[str, str]:
     """Name and unit of a header cell; the apostrophe that keeps a spreadsheet from reckoning is taken off.
 
-    >>> _name_and_unit("M_gbx (left) [Nm]"), _name_and_unit("'=1+1")
+    >>> name_and_unit("M_gbx (left) [Nm]"), name_and_unit("'=1+1")
     (('M_gbx (left)', 'Nm'), ('=1+1', ''))
     """
     plain = cell[1:] if re.match(r"'\s*[=+\-@]", cell) else cell

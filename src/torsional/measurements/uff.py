@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
@@ -19,42 +18,17 @@ from torsional.errors import ModelError
 from torsional.files.opening import read_bytes
 from torsional.measurements.columns import seconds
 from torsional.measurements.recording import PULSES, Channel, Found, Raster, bounded
+from torsional.measurements.uff_head import NUMBER, Head, body, exact_step, head_lines, head_of
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.units import quoted
 
 BYTES = 2_000_000_000
 FUNCTION = 58
-HEAD_LINES = 11
-HEAD_BYTES = 4000
 AXES = {17: "time", 18: "frequency", 19: "speed", 20: "order"}
 """What the abscissa is, by its specific data type."""
 _AXIS_UNITS = {"time": "s", "frequency": "Hz", "speed": "rpm", "order": "-"}
 _EDGE = re.compile(rb"(?:^|\n)[ ]{4}-1[ \t]*\r?(?=\n|\Z)")
 _END = re.compile(rb"\s*-1[ \t]*\r?(?:\n|\Z)")
-_KINDS = {2: (False, 4), 4: (False, 8), 5: (True, 4), 6: (True, 8)}
-"""Whether complex, and the bytes of a number, by the ordinate's data type."""
-_FLOAT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
-
-
-@dataclass(frozen=True)
-class Head:
-    """What the head of a function says; texts without what stands for none."""
-
-    binary: bool
-    order: str
-    titles: tuple[str, ...]
-    place: str
-    complex: bool
-    width: int
-    count: int
-    even: bool
-    start: float
-    step: float
-    step_text: str
-    axis: int
-    axis_units: str
-    label: str
-    units: str
 
 
 def read(path: Path) -> Found:
@@ -66,8 +40,8 @@ def read(path: Path) -> Found:
             others.add(str(kind))
             continue
         try:
-            head = _head(text, _lines(data, start))
-            channels.append(_channel(head, _values(head, data, _body(data, start))))
+            head = head_of(text, head_lines(data, start))
+            channels.append(_channel(head, _values(head, data, body(data, start))))
         except ModelError as error:
             raise error.located(prefix=f"dataset {number}") from None
         dates.append(head.titles[2])
@@ -105,8 +79,8 @@ def _datasets(data: bytes) -> Iterator[tuple[int, str, int]]:
 def _after(data: bytes, text: str, start: int) -> int:
     """Where to look for the next dataset: past the edge that ends this one; bytes of values may look like an edge."""
     if "b" in text.lower():
-        head = _head(text, _lines(data, start))
-        begin = _body(data, start)
+        head = head_of(text, head_lines(data, start))
+        begin = body(data, start)
         ended = _END.match(data, begin + _size(head, data, begin))
         if ended:
             return ended.end() - 1
@@ -114,88 +88,6 @@ def _after(data: bytes, text: str, start: int) -> int:
     if edge is None:
         raise ModelError("the file is cut: a dataset has no end", found=f"dataset {text.split()[0]}")
     return edge.end()
-
-
-def _body(data: bytes, start: int) -> int:
-    """The place behind the eleven lines of the head."""
-    for _ in range(HEAD_LINES):
-        start = data.find(b"\n", start) + 1
-        if not start:
-            raise ModelError("the file is cut within the head of a dataset")
-    return start
-
-
-def _lines(data: bytes, start: int) -> list[str]:
-    """The lines of a head."""
-    text = data[start : start + HEAD_BYTES].decode("utf-8", "replace")
-    return [line.rstrip("\r") for line in text.split("\n")[:HEAD_LINES]]
-
-
-def _head(text: str, lines: Sequence[str]) -> Head:
-    if len(lines) < HEAD_LINES:
-        raise ModelError("the head of the function is not whole", found=f"{len(lines)} lines", allowed="11")
-    form, axis, ordinate = lines[6], lines[7], lines[8]
-    kind, count, spacing = (_whole(form[i : i + 10], "line 7 of the head") for i in (0, 10, 20))
-    if kind not in _KINDS:
-        allowed = "2, 4 (real), 5, 6 (complex)"
-        raise ModelError("the ordinate has an unknown data type", found=str(kind), allowed=allowed)
-    bounded(count)
-    binary = text[6:7].lower() == "b"
-    return Head(
-        binary=binary,
-        order=_byte_order(text) if binary else "<",
-        titles=tuple(_text(line) for line in lines[:5]),
-        place=_place(lines[5]),
-        complex=_KINDS[kind][0],
-        width=_KINDS[kind][1],
-        count=count,
-        even=spacing == 1,
-        start=_real(form[30:43]),
-        step=_real(form[43:56]),
-        step_text=form[43:56].strip(),
-        axis=_whole(axis[:10], "line 8 of the head"),
-        axis_units=_text(axis[47:67]),
-        label=_text(ordinate[26:46]),
-        units=_text(ordinate[47:67]),
-    )
-
-
-def _byte_order(text: str) -> str:
-    order, form = (_whole(text[i : i + 6], "the line '58b'") for i in (7, 13))
-    if order not in (1, 2) or form != 2:
-        allowed = "byte order 1 or 2, number format 2 (IEEE 754)"
-        raise ModelError("numbers in this form are not read", found=quoted(text[:20]), allowed=allowed)
-    return "<" if order == 1 else ">"
-
-
-def _whole(text: str, where: str) -> int:
-    if not re.fullmatch(r"\s*[+-]?\d{1,10}\s*", text):
-        raise ModelError("a whole number is wanted", where=where, found=quoted(text))
-    if int(text) < 0:
-        raise ModelError("must not be negative", where=where, found=quoted(text))
-    return int(text)
-
-
-def _real(text: str) -> float:
-    plain = text.strip().upper().replace("D", "E")
-    if not plain:
-        return 0.0
-    if not _FLOAT.fullmatch(plain) or not np.isfinite(float(plain)):
-        raise ModelError("a finite number is wanted", where="line 7 of the head", found=quoted(text))
-    return float(plain)
-
-
-def _text(field: str) -> str:
-    return "" if field.strip().upper() == "NONE" else field.strip()
-
-
-def _place(line: str) -> str:
-    """Entity, node and direction of the response, as measuring points are named: 12:+Z."""
-    entity, node = _text(line[31:41]), line[41:51].strip()
-    axis = {"1": "X", "2": "Y", "3": "Z", "4": "RX", "5": "RY", "6": "RZ"}.get(line[51:55].strip().lstrip("+-"), "")
-    sign = "-" if line[51:55].strip().startswith("-") else "+"
-    point = "" if node in ("", "0") and not axis else node + (f":{sign}{axis}" if axis else "")
-    return " ".join(part for part in (entity, point) if part)
 
 
 def _size(head: Head, data: bytes, begin: int) -> int:
@@ -248,7 +140,7 @@ def _split(text: str, head: Head, across: int) -> Array:
     try:
         found = np.array(words, dtype=float)
     except ValueError:
-        wrong = next(word for word in words if not _FLOAT.fullmatch(word))
+        wrong = next(word for word in words if not NUMBER.fullmatch(word))
         raise ModelError("a number is wanted among the values", found=quoted(wrong)) from None
     return found
 
@@ -263,7 +155,10 @@ def _fixed(line: str, widths: Sequence[int]) -> Iterator[str]:
 def _channel(head: Head, values: Array) -> Channel:
     name = AXES.get(head.axis, "abscissa")
     if head.even:
-        axis: Array = np.asarray(head.start + _exact_step(head) * np.arange(head.count))
+        step = exact_step(head.step)
+        if not step > 0:
+            raise ModelError("the step of the abscissa must be positive", found=quoted(head.step))
+        axis: Array = np.asarray(head.start + step * np.arange(head.count))
     else:
         axis, values = values[:, 0].copy(), values[:, 1:]
     units = head.axis_units or _AXIS_UNITS.get(name, "")
@@ -272,13 +167,3 @@ def _channel(head: Head, values: Array) -> Channel:
     told = {"units": head.units, "group": head.place, "comment": head.titles[1], "long_name": head.label}
     attrs: dict[str, str | float] = {"kind": PULSES} if head.titles[4] == PULSES else {}
     return Channel(head.titles[0] or head.place or "function", ordinate, raster, **told, attrs=attrs)
-
-
-def _exact_step(head: Head) -> float:
-    """The step, whose six digits stand for one over a whole rate where that rounds to them: 2.26757E-05 is 1/44100."""
-    if not head.step > 0:
-        raise ModelError("the step of the abscissa must be positive", found=quoted(head.step_text))
-    rate = round(1.0 / head.step) if head.step > 1e-12 else 0
-    digits = len(re.sub(r"[eE].*|\D", "", head.step_text).lstrip("0")) - 1
-    told = f"{1.0 / rate:.{max(digits, 0)}e}" if rate else ""
-    return 1.0 / rate if told and float(told) == head.step and digits >= 4 else head.step
