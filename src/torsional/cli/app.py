@@ -27,6 +27,7 @@ def command() -> Any:
         "steady",
         "moving",
         "asking",
+        "measuring",
         "writing",
     ):  # in the order of the help; each declares its commands on the app
         import_module(f"torsional.cli.commands.{module}")

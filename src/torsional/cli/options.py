@@ -271,3 +271,26 @@ Figures = Annotated[
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")]
 Status = Annotated[bool, typer.Option("--status", help="Tell how far the folder is, and do nothing.")]
+
+Measurement = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help="Measurement file: .mf4, .uff, .mat, .parquet, .csv; or a result, .nc.", show_default=False
+    ),
+]
+Converted = Annotated[
+    Path,
+    typer.Argument(
+        metavar="OUTPUT",
+        help="The file to write: .mf4, .uff, .mat, .parquet or .csv; with a mapping also a result, .nc.",
+        show_default=False,
+    ),
+]
+Mapping = Annotated[
+    Path | None,
+    _taking("--mapping", "-m", metavar="FILE", help="Which channel is which quantity of which node; see mapping."),
+]
+MappedModel = Annotated[
+    Path | None, _taking("--model", metavar="MODEL", help="The model whose nodes and elements the mapping may name.")
+]
+NewMapping = Annotated[Path | None, _taking("--output", "-o", metavar="FILE", help="The mapping file to write.")]

@@ -15,8 +15,10 @@ from torsional.errors import ModelError, nearest
 Writer = Callable[[Path], object]
 
 
-def checked(paths: Sequence[Path] | None, suffixes: Sequence[str], inputs: Sequence[Path] = ()) -> list[Path]:
-    """The output files, refused while nothing is lost yet.
+def checked(
+    paths: Sequence[Path] | None, suffixes: Sequence[str], inputs: Sequence[Path] = (), where: str = "--output"
+) -> list[Path]:
+    """The output files, refused while nothing is lost yet; ``where`` is what names them on the command line.
 
     ModelError for an ending that is not among ``suffixes``, a folder that is not there or may not be written, a folder
     in the file's place, one name given twice, and a name of one of the ``inputs``.
@@ -24,18 +26,25 @@ def checked(paths: Sequence[Path] | None, suffixes: Sequence[str], inputs: Seque
     listed = list(paths or ())
     for index, path in enumerate(listed):
         if path.suffix.lower() not in suffixes:
-            _refuse_suffix(path, suffixes)
+            _refuse_suffix(path, suffixes, where)
         if path.resolve() in [other.resolve() for other in listed[:index]]:
-            raise ModelError("the file is named twice", where="--output", found=repr(str(path)))
-        _refuse_place(path)
+            raise ModelError("the file is named twice", where=where, found=repr(str(path)))
+        _refuse_place(path, where)
         if any(_same(path, given) for given in inputs):
             raise ModelError(
                 "this would overwrite an input file",
-                where="--output",
+                where=where,
                 found=repr(str(path)),
                 remedy="choose another name",
             )
     return listed
+
+
+def refuse_overwriting(paths: Sequence[Path]) -> None:
+    """ModelError for a file that is there already, of commands that replace one only where they are told to."""
+    for path in paths:
+        if path.exists():
+            raise ModelError("the file is there already", file=str(path), remedy="choose another name, or say --force")
 
 
 def written(writers: Mapping[Path, Writer]) -> None:
@@ -61,27 +70,27 @@ def text_writer(text: str) -> Writer:
     return lambda path: path.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _refuse_suffix(path: Path, suffixes: Sequence[str]) -> None:
+def _refuse_suffix(path: Path, suffixes: Sequence[str], where: str) -> None:
     remedy = nearest(path.suffix, suffixes) if path.suffix else ""
     found = repr(path.suffix) if path.suffix else f"{str(path)!r}, a name without one"
     raise ModelError(
         "the ending of the file says what is written, and this one is not known here",
-        where="--output",
+        where=where,
         found=found,
         allowed=", ".join(suffixes),
         remedy=remedy if remedy.startswith("did") else "",
     )
 
 
-def _refuse_place(path: Path) -> None:
+def _refuse_place(path: Path, where: str) -> None:
     if path.is_dir():
-        raise ModelError("this is a folder", where="--output", found=repr(str(path)), remedy="name a file in it")
+        raise ModelError("this is a folder", where=where, found=repr(str(path)), remedy="name a file in it")
     folder = path.resolve().parent
     if not folder.is_dir():
         remedy = "make the folder first, or name one that is there"
-        raise ModelError("there is no such folder", where="--output", found=repr(str(path.parent)), remedy=remedy)
+        raise ModelError("there is no such folder", where=where, found=repr(str(path.parent)), remedy=remedy)
     if not os.access(folder, os.W_OK):
-        raise ModelError("nothing may be written in this folder", where="--output", found=repr(str(path.parent)))
+        raise ModelError("nothing may be written in this folder", where=where, found=repr(str(path.parent)))
 
 
 def _same(path: Path, given: Path) -> bool:

@@ -6,8 +6,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from torsional.cli.outputs import checked, text_writer, written
-from torsional.errors import ModelError
+from torsional.cli.outputs import checked, refuse_overwriting, text_writer, written
 
 
 def run(what: str, output: Sequence[Path] | None, kind: str = "", force: bool = False) -> None:
@@ -15,7 +14,7 @@ def run(what: str, output: Sequence[Path] | None, kind: str = "", force: bool = 
     text, suffixes = _schema() if what == "schema" else _starter(kind)
     outputs = checked(output, suffixes)
     if what == "new" and not force:
-        _refuse_overwriting(outputs)
+        refuse_overwriting(outputs)
     if not outputs:
         print(text, end="")
     written({path: text_writer(text) for path in outputs})
@@ -31,9 +30,3 @@ def _starter(kind: str) -> tuple[str, Sequence[str]]:
     from torsional.files import starter
 
     return starter(kind), (".yaml", ".yml")
-
-
-def _refuse_overwriting(outputs: Sequence[Path]) -> None:
-    for path in outputs:
-        if path.exists():
-            raise ModelError("the file is there already", file=str(path), remedy="choose another name, or say --force")
