@@ -79,7 +79,12 @@ from .laws import (
     contact_time as contact_time,
     hysteresis_loop as hysteresis_loop,
 )
-from .measurements import read_measurement as read_measurement
+from .measurements import (
+    load_mapping as load_mapping,
+    mapped as mapped,
+    read_measurement as read_measurement,
+    write_measurement as write_measurement,
+)
 from .measurements.encoders import (
     shaft_from_counter as shaft_from_counter,
     shaft_from_encoder as shaft_from_encoder,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
 
 from torsional.measurements.recording import Channel, Found, Raster, pulses, recording
-import xarray as xr
 
 START = "2026-11-23T05:42:11.250000"
 

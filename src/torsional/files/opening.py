@@ -86,7 +86,7 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
 
 def _read_bytes(path: Path, most: int) -> bytes:
     with _opened(path) as file:
-        data = file.read(most + 1)
+        data = file.read(min(most, os.fstat(file.fileno()).st_size) + 1)  # as much is allocated as is asked for
     if len(data) > most:
         raise _too_large(most)
     return data

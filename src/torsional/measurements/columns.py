@@ -83,7 +83,7 @@ def _over_time(time: Column, held: Sequence[Column]) -> Iterator[Channel]:
     count = int(ends[-1]) + 1 if ends.size else 0
     raster = Raster(seconds(time.values[:count], time.units, where))
     if not held:
-        yield pulses(time.name.removeprefix(_OF_EVENTS), raster.values)
+        yield pulses(time.name.removeprefix(_OF_EVENTS), raster.values, time.group, time.comment)
     for column in held:
         attrs: dict[str, str | float] = {"kind": column.kind} if column.kind else {}
         told = {"units": column.units, "group": column.group, "comment": column.comment}
@@ -101,7 +101,8 @@ def table_of(data: xr.Dataset) -> list[Column]:
         held = {str(name): values for name, values in data.data_vars.items() if values.dims == (dim,)}
         alone = next((name for name, values in held.items() if events_alone(held, values)), "")
         axis, title = data[dim], f"{_OF_EVENTS}{alone}" if alone else str(dim)
-        columns.append(Column(title, axis.attrs.get("units", ""), _filled(axis.values, longest)))
+        notes = _notes(held[alone]) if alone else {}
+        columns.append(Column(title, axis.attrs.get("units", ""), _filled(axis.values, longest), **notes))
         for name, values in held.items():
             columns += [] if alone else _columns(name, values, longest)
     return columns
@@ -113,13 +114,17 @@ def events_alone(held: Mapping[str, xr.DataArray], values: xr.DataArray) -> bool
 
 
 def _columns(name: str, values: xr.DataArray, count: int) -> Iterator[Column]:
-    told = {key: str(values.attrs.get(key, "")) for key in ("group", "comment", "kind")}
+    told = {**_notes(values), "kind": str(values.attrs.get("kind", ""))}
     unit, numbers = str(values.attrs.get("units", "")), values.values
     if not np.iscomplexobj(numbers):
         yield Column(name, unit, _filled(numbers, count), **told)
         return
     yield Column(f"{name} real", unit, _filled(numbers.real, count), **told)
     yield Column(f"{name} imaginary", unit, _filled(numbers.imag, count), **told)
+
+
+def _notes(values: xr.DataArray) -> dict[str, str]:
+    return {key: str(values.attrs.get(key, "")) for key in ("group", "comment")}
 
 
 def _filled(values: Array | ComplexArray, count: int) -> Array:

@@ -22,7 +22,8 @@ TEXT = 1_000_000
 """Bytes of one text."""
 RAW = 8 * VALUES
 """Bytes of records, unpacked."""
-_FORMULA = re.compile(r"(?:[\s+\-*/^(),]|\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+|[A-Za-z][A-Za-z0-9]{0,15})*")
+_STRANGE = re.compile(r"[^A-Za-z0-9_\s+\-*/^().,]|__|\.\s*(?![eE][+-]?\d)[A-Za-z_]")
+"""What no formula has: other marks, and a point before a name."""
 _PLACES = {0, 2, 4, 5}
 """Kinds of channels whose values stand in the record: of fixed length, masters, for synchronisation, of a length told
 elsewhere."""
@@ -146,7 +147,7 @@ class Walk:
         if self._unpack("<B", block)[0] != 3:
             return
         text = self._read_text(_link(block, 4))
-        if not _FORMULA.fullmatch(text):
+        if _STRANGE.search(text):
             raise ModelError("a conversion is no formula", where=f"byte {at}", found=repr(text[:60]))
 
     def _text(self, at: int) -> None:

@@ -59,9 +59,9 @@ class Found:
     left_out: Sequence[str] = ()
 
 
-def pulses(name: str, times: Array, group: str = "") -> Channel:
+def pulses(name: str, times: Array, group: str = "", comment: str = "") -> Channel:
     """Events without values: a channel whose values are their times [s]."""
-    return Channel(name, times, Raster(times), "s", group, attrs={"kind": PULSES})
+    return Channel(name, times, Raster(times), "s", group, comment, attrs={"kind": PULSES})
 
 
 def recording(found: Found, source: str) -> xr.Dataset:
