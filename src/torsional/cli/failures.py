@@ -59,8 +59,8 @@ def _run(arguments: list[str]) -> int:
     from torsional.cli.app import HELP, command
 
     program, path = command(), "torsional"
-    if arguments and arguments[0] in program.commands:  # straight to it: typer would first work through the group's own
-        path = f"torsional {arguments[0]}"
+    while arguments and arguments[0] in getattr(program, "commands", ()):
+        path = f"{path} {arguments[0]}"  # straight to it: typer would first work through the group's own
         program, arguments = program.commands[arguments[0]], arguments[1:]
     if not arguments and hasattr(program, "list_commands"):
         arguments = ["--help"]
