@@ -12,7 +12,7 @@ from torsional import __version__
 from torsional.cli.documents import described, escaped, json_text
 from torsional.cli.failures import clean
 from torsional.cli.outputs import Writer, text_writer, written
-from torsional.cli.request import Request
+from torsional.cli.request import Request, Wanted
 from torsional.cli.tables import Table, print_tables
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Answer:
     """``tables`` are printed; ``document`` goes to --json and .json, with ``data`` as its result.
 
     ``data`` is also what .csv holds, or ``columns`` where that is less; ``full`` what .nc holds, where that is more;
-    ``picture`` draws a figure; ``sentences`` are printed before the tables.
+    ``picture`` draws a figure; ``sentences`` are printed before the tables; ``page`` writes .html.
     """
 
     command: str
@@ -38,6 +38,7 @@ class Answer:
     picture: Callable[[], Figure] | None = None
     columns: xr.Dataset | None = None
     sentences: Sequence[str] = ()
+    page: Writer | None = None
 
 
 def told_settings(request: Request, **settings: object) -> dict[str, object]:
@@ -47,7 +48,7 @@ def told_settings(request: Request, **settings: object) -> dict[str, object]:
     return {"model": named, "settings": settings}
 
 
-def deliver(answer: Answer, request: Request) -> None:
+def deliver(answer: Answer, request: Request | Wanted) -> None:
     """Write the files, then print: nothing is printed about files that could not be written."""
     wanted = request.as_json or any(path.suffix.lower() == ".json" for path in request.outputs)
     text = _document(answer) if wanted else ""
@@ -81,6 +82,9 @@ def _writer(answer: Answer, path: Path, text: str) -> Writer:
         return text_writer(text)
     if suffix in PICTURES:
         return lambda draft: _draw(answer, draft)
+    if suffix == ".html":
+        assert answer.page is not None
+        return answer.page
     data = answer.data
     assert data is not None
     if suffix == ".csv":

@@ -28,6 +28,7 @@ def command() -> Any:
         "moving",
         "asking",
         "measuring",
+        "tracking",
         "writing",
     ):  # in the order of the help; each declares its commands on the app
         import_module(f"torsional.cli.commands.{module}")

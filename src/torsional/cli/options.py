@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 
-def _taking(*names: str, metavar: str, help: str) -> Any:
+def taking(*names: str, metavar: str, help: str) -> Any:
     """An option that takes a value."""
     return typer.Option(*names, metavar=metavar, help=help, show_default=False)
 
@@ -19,31 +19,31 @@ ModelFile = Annotated[
         metavar="MODEL", help="Model file (.yaml or .json); 'torsional new' writes one.", show_default=False
     ),
 ]
-Gear = Annotated[str, _taking("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.")]
+Gear = Annotated[str, taking("--gear", "-g", metavar="NAME", help="Gear by its name; default: the last one.")]
 Gears = Annotated[
     str,
-    _taking("--gear", "-g", metavar="NAMES", help="Gear, several as 10,11,12, or 'all'; default: the last one."),
+    taking("--gear", "-g", metavar="NAMES", help="Gear, several as 10,11,12, or 'all'; default: the last one."),
 ]
 
 _TORQUE = "Mean engine torque in Nm, or with its unit as 1.2kNm"
 _SPEED = "Mean engine speed in rpm, or with its unit as 94rad/s"
-Torque = Annotated[str, _taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; default: full load.")]
+Torque = Annotated[str, taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; default: full load.")]
 Torques = Annotated[
     str,
-    _taking(
+    taking(
         "--torque", "-t", metavar="RANGE", help="Mean engine torques in Nm, as 0:2500:100; default: up to full load."
     ),
 ]
 TorqueOrRange = Annotated[
     str,
-    _taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; or a range, as 900:1500; default: full load."),
+    taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; or a range, as 900:1500; default: full load."),
 ]
 Speed = Annotated[
-    str, _taking("--speed", "-s", metavar="SPEED", help=f"{_SPEED}; default: where full load is highest.")
+    str, taking("--speed", "-s", metavar="SPEED", help=f"{_SPEED}; default: where full load is highest.")
 ]
 Speeds = Annotated[
     str,
-    _taking(
+    taking(
         "--speed",
         "-s",
         metavar="RANGE",
@@ -52,7 +52,7 @@ Speeds = Annotated[
 ]
 SpeedOrRange = Annotated[
     str,
-    _taking(
+    taking(
         "--speed",
         "-s",
         metavar="RANGE",
@@ -62,7 +62,7 @@ SpeedOrRange = Annotated[
 ]
 SpeedInTime = Annotated[
     str,
-    _taking(
+    taking(
         "--speed",
         "-s",
         metavar="SPEED",
@@ -71,7 +71,7 @@ SpeedInTime = Annotated[
 ]
 SpeedList = Annotated[
     str,
-    _taking(
+    taking(
         "--speed",
         "-s",
         metavar="SPEEDS",
@@ -80,31 +80,31 @@ SpeedList = Annotated[
 ]
 
 Duration = Annotated[
-    str, _taking("--duration", "-d", metavar="TIME", help="How long it runs in s, or with its unit; default: 2.")
+    str, taking("--duration", "-d", metavar="TIME", help="How long it runs in s, or with its unit; default: 2.")
 ]
 Step = Annotated[
-    str, _taking("--step", metavar="TIME", help="Step of time in s, or with its unit as 0.05ms; default: 0.1ms.")
+    str, taking("--step", metavar="TIME", help="Step of time in s, or with its unit as 0.05ms; default: 0.1ms.")
 ]
 
 Sweep = Annotated[
     str,
-    _taking(
+    taking(
         "--sweep",
         metavar="ANGLES",
         help="How far it is turned to either side in degrees, as 60 or 5,20,60; default: up to the stop, or 60.",
     ),
 ]
-Rate = Annotated[str, _taking("--rate", metavar="PACE", help="How fast in deg/s, or with its unit; default: 3.")]
+Rate = Annotated[str, taking("--rate", metavar="PACE", help="How fast in deg/s, or with its unit; default: 3.")]
 About = Annotated[
-    str, _taking("--about", metavar="ANGLE", help="The angle in the middle of the sweep in degrees; default: 0.")
+    str, taking("--about", metavar="ANGLE", help="The angle in the middle of the sweep in degrees; default: 0.")
 ]
 Turned = Annotated[
     str,
-    _taking("--turned", metavar="NODE", help="The node that is turned; default: the flywheel on the crankshaft."),
+    taking("--turned", metavar="NODE", help="The node that is turned; default: the flywheel on the crankshaft."),
 ]
 Held = Annotated[
     str,
-    _taking(
+    taking(
         "--held", metavar="NODE", help="The node it is turned against; default: the flywheel that carries the clutch."
     ),
 ]
@@ -121,7 +121,7 @@ ScenarioName = Annotated[
 _AS_FILES = "units as in the file, none being SI; may be repeated"
 Settings = Annotated[
     list[str] | None,
-    _taking(
+    taking(
         "--setting",
         "-s",
         metavar="PATH=VALUE",
@@ -130,12 +130,12 @@ Settings = Annotated[
 ]
 Changes = Annotated[
     list[str] | None,
-    _taking("--set", metavar="PATH=VALUE", help=f"Change the model, as absorber.damping=30: {_AS_FILES}."),
+    taking("--set", metavar="PATH=VALUE", help=f"Change the model, as absorber.damping=30: {_AS_FILES}."),
 ]
 
 Parameter = Annotated[
     str,
-    _taking(
+    taking(
         "--parameter",
         "-p",
         metavar="PATH=RANGE",
@@ -145,7 +145,7 @@ Parameter = Annotated[
 ]
 At = Annotated[
     str,
-    _taking(
+    taking(
         "--at",
         metavar="VALUE",
         help="Where to look at the motions themselves: orders, stages, waveforms; a value of what is followed, as 940.",
@@ -156,45 +156,45 @@ Isolated = Annotated[
 ]
 Points = Annotated[
     str,
-    _taking("--points", metavar="N", help="Speeds, and mean torques, of ranges without a step; default: 71 and 26."),
+    taking("--points", metavar="N", help="Speeds, and mean torques, of ranges without a step; default: 71 and 26."),
 ]
 
-Order = Annotated[list[str] | None, _taking("--order", "-n", metavar="N", help="An engine order; may be repeated.")]
-Orders = Annotated[str, _taking("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.")]
+Order = Annotated[list[str] | None, taking("--order", "-n", metavar="N", help="An engine order; may be repeated.")]
+Orders = Annotated[str, taking("--orders", metavar="RANGE", help="Engine orders, as 0.5:12:0.5.")]
 OneOrder = Annotated[
     str,
-    _taking("--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest."),
+    taking("--order", "-n", metavar="N", help="Engine order of the speeds; default: the strongest."),
 ]
 Nodes = Annotated[
-    list[str] | None, _taking("--node", metavar="NAME", help="A node to look at, or 'all'; may be repeated.")
+    list[str] | None, taking("--node", metavar="NAME", help="A node to look at, or 'all'; may be repeated.")
 ]
 Elements = Annotated[
-    list[str] | None, _taking("--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.")
+    list[str] | None, taking("--element", metavar="NAME", help="A connection to look at, or 'all'; may be repeated.")
 ]
 OneNode = Annotated[
     str,
-    _taking("--node", metavar="NAME", help="The node whose acceleration is told; default: the one to be kept quiet."),
+    taking("--node", metavar="NAME", help="The node whose acceleration is told; default: the one to be kept quiet."),
 ]
 OneElement = Annotated[
     str,
-    _taking("--element", metavar="NAME", help="The connection whose torque is told; default: the first with stages."),
+    taking("--element", metavar="NAME", help="The connection whose torque is told; default: the first with stages."),
 ]
-Worst = Annotated[str, _taking("--worst", metavar="N", help="Cells to list for each place; default: 3.")]
+Worst = Annotated[str, taking("--worst", metavar="N", help="Cells to list for each place; default: 3.")]
 Expand = Annotated[bool, typer.Option("--expand", help="Print the model written as components alone.")]
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, in SI units, and nothing else.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 Output = Annotated[
     list[Path] | None,
-    _taking("--output", "-o", metavar="FILE", help="Write a file; its ending says the kind. May be repeated."),
+    taking("--output", "-o", metavar="FILE", help="Write a file; its ending says the kind. May be repeated."),
 ]
 Page = Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The page to write, ending in .html.")]
-NewFile = Annotated[Path | None, _taking("--output", "-o", metavar="FILE", help="The model file to write.")]
+NewFile = Annotated[Path | None, taking("--output", "-o", metavar="FILE", help="The model file to write.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")]
 Kind = Annotated[str, typer.Argument(metavar="[KIND]", help="truck or line.")]
 Compare = Annotated[
     list[Path] | None,
-    _taking("--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated."),
+    taking("--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated."),
 ]
 
 ClaimIds = Annotated[
@@ -204,7 +204,7 @@ ClaimIds = Annotated[
     ),
 ]
 TruckFile = Annotated[
-    Path | None, _taking("--truck", metavar="MODEL", help="A model file to ask; default: the shipped truck.")
+    Path | None, taking("--truck", metavar="MODEL", help="A model file to ask; default: the shipped truck.")
 ]
 StudyModel = Annotated[
     Path | None,
@@ -222,7 +222,7 @@ Processes = Annotated[
 ]
 
 Cluster = Annotated[
-    str, _taking("--cluster", metavar="ADDRESS", help="Dask scheduler whose workers do it, as tcp://host:8786.")
+    str, taking("--cluster", metavar="ADDRESS", help="Dask scheduler whose workers do it, as tcp://host:8786.")
 ]
 
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="Plan of a sweep (YAML or JSON).", show_default=False)]
@@ -230,24 +230,24 @@ Optimisation = Annotated[
     str, typer.Argument(metavar="PLAN", help="Plan of an optimisation, or the name of a preset.", show_default=False)
 ]
 Space = Annotated[
-    str, _taking("--space", metavar="VALUE", help="Preset: most inertia of the absorber in kgm²; default: its own.")
+    str, taking("--space", metavar="VALUE", help="Preset: most inertia of the absorber in kgm²; default: its own.")
 ]
 Travel = Annotated[
     str,
-    _taking("--travel", metavar="VALUE", help="Preset: most twist of its springs in rad, or 15deg; default: its stop."),
+    taking("--travel", metavar="VALUE", help="Preset: most twist of its springs in rad, or 15deg; default: its stop."),
 ]
 Power = Annotated[
-    str, _taking("--power", metavar="VALUE", help="Preset: most friction power at the resonance in W, or 0.5kW.")
+    str, taking("--power", metavar="VALUE", help="Preset: most friction power at the resonance in W, or 0.5kW.")
 ]
 PendulumMass = Annotated[
-    str, _taking("--mass", metavar="VALUE", help="Preset best-pendulum: most mass in kg; default: 1.5 times its own.")
+    str, taking("--mass", metavar="VALUE", help="Preset best-pendulum: most mass in kg; default: 1.5 times its own.")
 ]
 Tuning = Annotated[
     str,
-    _taking("--tuning", metavar="RATIO", help="Preset best-pendulum: its order over the firing order; default: 1.02."),
+    taking("--tuning", metavar="RATIO", help="Preset best-pendulum: its order over the firing order; default: 1.02."),
 ]
 AbsorberKind = Annotated[
-    str, _taking("--absorber", metavar="NAME", help="Preset best-clutch-friction: smf, dmf, psva …; default: the own.")
+    str, taking("--absorber", metavar="NAME", help="Preset best-clutch-friction: smf, dmf, psva …; default: the own.")
 ]
 Population = Annotated[
     int, typer.Option("--population", metavar="N", min=0, help="Designs of a generation.", show_default=False)
@@ -260,14 +260,14 @@ Seed = Annotated[
 ]
 KeptIn = Annotated[
     Path | None,
-    _taking("--folder", metavar="FOLDER", help="Where work is kept; default: the plan's name and .optimise."),
+    taking("--folder", metavar="FOLDER", help="Where work is kept; default: the plan's name and .optimise."),
 ]
 Folder = Annotated[
     Path | None,
-    _taking("--folder", metavar="FOLDER", help="Where pieces are kept; default: the plan's name and .sweep."),
+    taking("--folder", metavar="FOLDER", help="Where pieces are kept; default: the plan's name and .sweep."),
 ]
 Figures = Annotated[
-    list[str] | None, _taking("--figure", metavar="NAME", help="A figure of the answer; may be repeated; default: all.")
+    list[str] | None, taking("--figure", metavar="NAME", help="A figure of the answer; may be repeated; default: all.")
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with what the folder holds.")]
 Status = Annotated[bool, typer.Option("--status", help="Tell how far the folder is, and do nothing.")]
@@ -288,9 +288,9 @@ Converted = Annotated[
 ]
 Mapping = Annotated[
     Path | None,
-    _taking("--mapping", "-m", metavar="FILE", help="Which channel is which quantity of which node; see mapping."),
+    taking("--mapping", "-m", metavar="FILE", help="Which channel is which quantity of which node; see mapping."),
 ]
 MappedModel = Annotated[
-    Path | None, _taking("--model", metavar="MODEL", help="The model whose nodes and elements the mapping may name.")
+    Path | None, taking("--model", metavar="MODEL", help="The model whose nodes and elements the mapping may name.")
 ]
-NewMapping = Annotated[Path | None, _taking("--output", "-o", metavar="FILE", help="The mapping file to write.")]
+NewMapping = Annotated[Path | None, taking("--output", "-o", metavar="FILE", help="The mapping file to write.")]

@@ -12,6 +12,15 @@ from torsional.model import Model
 
 
 @dataclass(frozen=True, eq=False)
+class Wanted:
+    """Where an answer goes: ``outputs`` that may be written, and what is printed."""
+
+    outputs: Sequence[Path]
+    as_json: bool
+    quiet: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Request:
     """The ``model`` read from ``path`` with its ``changes``; ``outputs`` that may be written; what is printed."""
 

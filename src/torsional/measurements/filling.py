@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from torsional.numerics.arrays import Array
 
-BAND = 0.2
-"""Cycles a tooth up to which vibration is carried across a hole: order 12 of a wheel with 60 teeth."""
+BANDS = (0.2, 0.3)
+"""Cycles a tooth up to which vibration is carried across a hole, of two teeth (order 12 of 60) and of one."""
 NEAR = 32
 """Teeth on either side that are looked at."""
 NOISE = 1e-6
@@ -18,7 +18,7 @@ NOISE = 1e-6
 def filled(times: Array, number: NDArray[np.int64]) -> tuple[Array, NDArray[np.bool_]]:
     """Times [s] of all teeth from the first ``number`` to the last, and which of them were measured.
 
-    Best linear estimate of a signal with a flat spectrum up to `BAND` on a quadratic trend (universal kriging;
+    Best linear estimate of a signal with a flat spectrum up to `BANDS` on a quadratic trend (universal kriging;
     Wackernagel, Multivariate Geostatistics, Springer 2003, ch. 38), its weights being those of the pattern of holes.
 
     >>> number = np.array([n for n in range(200) if n % 60 not in (58, 59)])
@@ -50,16 +50,16 @@ def _holes(measured: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _weights(known: NDArray[np.int64], wanted: NDArray[np.int64]) -> Array:
     """Weights (wanted, known) of the measured neighbours."""
-    origin = float(wanted.mean())
+    origin, band = float(wanted.mean()), BANDS[wanted.size == 1]
     trend = np.vander((known - origin) / NEAR, 3)
     size, parts = known.size, min(3, known.size)
     matrix = np.zeros((size + parts, size + parts))
-    matrix[:size, :size] = np.sinc(2 * BAND * np.subtract.outer(known, known)) + NOISE * np.eye(size)
+    matrix[:size, :size] = np.sinc(2 * band * np.subtract.outer(known, known)) + NOISE * np.eye(size)
     matrix[:size, size:] = trend[:, 3 - parts :]
     matrix[size:, :size] = matrix[:size, size:].T
     right = np.vstack(
         [
-            np.sinc(2 * BAND * np.subtract.outer(known, wanted)),
+            np.sinc(2 * band * np.subtract.outer(known, wanted)),
             np.vander((wanted - origin) / NEAR, 3)[:, 3 - parts :].T,
         ]
     )

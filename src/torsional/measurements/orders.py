@@ -89,7 +89,7 @@ def track_orders(
     (('speed', 'order'), [0.0, 0.3], 'mm')
     """
     given, around = _given(signals, bool(shafts)), shafts or {}
-    turning = {name: torsional_angle(shaft, rotation) for name, shaft in around.items()}
+    turning = {name: torsional_angle(shaft, rotation).rename(name) for name, shaft in around.items()}
     columns = [column for signal in given.values() for column in _columns(signal)]
     order = np.atleast_1d(np.asarray(orders, dtype=float))
     even = _at_even_angles([*columns, *turning.values()], rotation, order, cycles)

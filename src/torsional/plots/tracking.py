@@ -68,6 +68,7 @@ def plot_tracked_orders(
     phases: bool = False,
     logarithmic: bool = False,
     title: str = "",
+    axes: Axes | None = None,
 ) -> Figure:
     """Sizes of tracked ``orders`` (speed, order) over speed, told by a ``convention``, and their ``phases`` below.
 
@@ -77,7 +78,9 @@ def plot_tracked_orders(
     as that of a speed does, is (speed, order) and drawn for the largest.
     """
     values = style.over(orders, "speed", "order")
-    drawn = style.panels(2 if phases else 1, 1, (7.4, 3.6 if not phases else 2.6), sharex=True)
+    size = (7.4, 2.6 if phases else 3.6)
+    drawn = style.panels(2 if phases else 1, 1, size, sharex=True) if axes is None else [axes]
+    phases = phases and axes is None
     rpm = values.speed.values / RPM
     sizes = in_convention(values, convention)
     factor = shown_factor(values)
