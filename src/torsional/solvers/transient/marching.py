@@ -104,7 +104,7 @@ def marched(problem: Problem, state: MotionState, steps: int, accuracy: Accuracy
         return _explicit(problem, state, state.time + accuracy.step * kept, accuracy)
     if accuracy.method == "exact":
         return _exact(problem, state, state.time + accuracy.step * kept)
-    plan, own = problem.plan, _standing(problem, state, accuracy.step)
+    plan, own = problem.plan, standing_of(problem, state, accuracy.step)
     told = march(plan, accuracy.family, accuracy.step, steps, own, at=kept, settings=accuracy.settings)
     records, count = told.records, len(state.memory)
     memory, load, lost = np.zeros((3, len(kept), count))
@@ -148,7 +148,7 @@ def method_share(standing: Standing | None) -> float:
     return float(standing.ledger[Entry.MADE]) / through if through > 0 else 0.0
 
 
-def _standing(problem: Problem, state: MotionState, step: float) -> Standing:
+def standing_of(problem: Problem, state: MotionState, step: float) -> Standing:
     """The state as the compiled march wants it; one that a march has left goes on to the last bit."""
     if state.standing is None:
         return begin(

@@ -141,7 +141,7 @@ class Run:
             if parts[-1].status != COMPLETE:
                 break
         self.accuracy = whole
-        return _picked(_together(parts, parts[-1].status), state.time + times)
+        return _picked(together(parts, parts[-1].status), state.time + times)
 
     def over(self, state: MotionState, time: float, output: float = 0.0) -> Marched:
         """Everything from a state on over a ``time`` [s], kept at intervals of ``output`` [s]."""
@@ -160,7 +160,7 @@ class Run:
             if not parts:
                 raise
             status = f"interrupted at {parts[-1].end.time:.6g} s"
-        return _together(parts, status)
+        return together(parts, status)
 
     def _piece(self, state: MotionState, steps: int, every: int, total: int) -> Marched:
         """One piece, with halved steps where the method's own production asks for it."""
@@ -217,7 +217,7 @@ def _picked(told: Marched, times: Array) -> Marched:
     return told._replace(**{name: getattr(told, name)[at] for name in fields})
 
 
-def _together(parts: Sequence[Marched], status: str) -> Marched:
+def together(parts: Sequence[Marched], status: str) -> Marched:
     """Pieces as one record."""
     return Marched(
         joined([part.time for part in parts]),
