@@ -5,6 +5,7 @@ from . import (
     components as components,
     engine as engine,
     errors as errors,
+    exchange as exchange,
     files as files,
     laws as laws,
     measurements as measurements,
@@ -63,6 +64,12 @@ from .engine import (
     Wiebe as Wiebe,
 )
 from .errors import ModelError as ModelError, TorsionalError as TorsionalError
+from .exchange.fmu.cosimulation import co_simulation as co_simulation
+from .exchange.fmu.coupling import FmuPart as FmuPart
+from .exchange.fmu.export import export_fmu as export_fmu
+from .exchange.inertia_table import read_inertia_table as read_inertia_table
+from .exchange.matrices import matrices as matrices, write_matrices as write_matrices
+from .exchange.opentorsion_assembly import from_opentorsion as from_opentorsion, read_tors as read_tors
 from .files import changed as changed, expanded as expanded, load_model as load_model
 from .files.scenario import load_scenario as load_scenario
 from .laws import (

@@ -29,6 +29,7 @@ def command() -> Any:
         "asking",
         "measuring",
         "tracking",
+        "exchanging",
         "writing",
     ):  # in the order of the help; each declares its commands on the app
         import_module(f"torsional.cli.commands.{module}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -18,7 +17,8 @@ from torsional.cli.outputs import text_writer, written
 from torsional.cli.request import Request
 from torsional.cli.tables import Column, Table
 from torsional.errors import ModelError
-from torsional.files import expanded, warnings_of
+from torsional.exchange.documents import yaml_of
+from torsional.files import warnings_of
 from torsional.files.expand import vars_of
 from torsional.model import Model
 from torsional.quantities import named_modes
@@ -61,17 +61,13 @@ def _checked_model(model: Model, gear: str, torque: float) -> Document:
 
 
 def _expand(request: Request) -> None:
-    from ruamel.yaml import YAML
-
     if request.as_json:
         raise ModelError("the expanded model is YAML", where="--expand", remedy="leave --json out")
-    yaml, text = YAML(typ="rt"), io.StringIO()
-    yaml.width, yaml.default_flow_style = 120, False
-    yaml.dump(expanded(request.model), text)
+    text = yaml_of(request.model)
     if request.outputs:
-        written({path: text_writer(text.getvalue()) for path in request.outputs})
+        written({path: text_writer(text) for path in request.outputs})
     elif not request.quiet:
-        print(text.getvalue(), end="")
+        print(text, end="")
 
 
 def summary(model: Model, gear: str) -> Document:

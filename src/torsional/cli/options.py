@@ -38,9 +38,7 @@ TorqueOrRange = Annotated[
     str,
     taking("--torque", "-t", metavar="TORQUE", help=f"{_TORQUE}; or a range, as 900:1500; default: full load."),
 ]
-Speed = Annotated[
-    str, taking("--speed", "-s", metavar="SPEED", help=f"{_SPEED}; default: where full load is highest.")
-]
+Speed = Annotated[str, taking("--speed", "-s", metavar="SPEED", help=f"{_SPEED}; default: where full load is highest.")]
 Speeds = Annotated[
     str,
     taking(

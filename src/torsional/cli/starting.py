@@ -12,8 +12,12 @@ from torsional.cli.outputs import checked, refuse_overwriting, text_writer, writ
 def run(what: str, output: Sequence[Path] | None, kind: str = "", force: bool = False) -> None:
     """Answer the command."""
     text, suffixes = _schema() if what == "schema" else _starter(kind)
-    outputs = checked(output, suffixes)
-    if what == "new" and not force:
+    delivered(text, checked(output, suffixes), force or what != "new")
+
+
+def delivered(text: str, outputs: Sequence[Path], force: bool) -> None:
+    """Print a text, or write it to files, which are replaced by ``force`` only."""
+    if not force:
         refuse_overwriting(outputs)
     if not outputs:
         print(text, end="")
