@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +30,8 @@ SAMPLES = 2880
 SQUARES = 33
 """Knots of the square of a speed that changes."""
 ABOVE = 1e-9
+KEPT = 8
+"""Operating points that are kept worked out, some 2 MB each."""
 NOTHING = Level(np.zeros(1), np.zeros(1))
 
 
@@ -102,12 +106,13 @@ class CylinderTorques:
 
     def profiles(self) -> tuple[tuple[Profile, ...], tuple[Profile, ...]]:
         """Gas torque of each node, motored, and what combustion adds to it, less what that adds to friction."""
-        motored, burning = (
-            self._summed(self.engine.torque(self.speed, torque, crank_angle_grid(SAMPLES), reciprocating=False))
-            for torque in (self._motored, self.torque)
-        )
-        gas = motored + np.add(*self._parts())[:, None]
-        return tuple(through(row, 2.0) for row in gas), tuple(through(row, 2.0) for row in burning - motored)
+        worked = self._worked
+        return worked.motored, worked.burning
+
+    @property
+    def _worked(self) -> _Worked:
+        """What the operating point comes to; models that share an engine share it."""
+        return _worked_out(_Same(self.engine), self.speed, self.torque, len(self.nodes) > 1)
 
     def friction(self) -> tuple[Array, Array]:
         """Friction of the motored engine on each node: dry [Nm], and growing with the whole speed [Nms/rad].
@@ -115,26 +120,10 @@ class CylinderTorques:
         FMEP V/4π; dry is what it has at standstill, the rest a straight line from there to ``speed``.  Without
         ``feedback`` all of it is dry, so that it damps no vibration.
         """
-        dry, more = self._parts()
+        dry, more = self._worked.friction
         if not (self.feedback and self.speed):
             return dry + more, np.zeros_like(more)
         return dry, more / self.speed
-
-    @property
-    def _motored(self) -> float:
-        """Mean torque of the motored engine [Nm]."""
-        least = float(self.engine.motored_torque(self.speed))
-        return least + ABOVE * abs(least)
-
-    def _parts(self) -> tuple[Array, Array]:
-        """Friction of the motored engine on each node [Nm]: at standstill, and what its speed adds."""
-        engine = self.engine
-        arm = engine.cylinder.displacement / CYCLE
-        law = engine.friction
-        each = arm * float(law.base(engine.mean_piston_speed(self.speed)) - law.base(0.0))
-        whole = engine.mean_torque_split(self.speed, self._motored).friction
-        more = each * engine.layout.throw_members.sum(axis=1)
-        return self._summed(whole - more), self._summed(more)
 
     def _rubbing(self, rows: Sequence[Array], speed: SpeedProfile) -> Acting:
         """Friction of every node, and the mean torque that it takes."""
@@ -145,10 +134,6 @@ class CylinderTorques:
             drags.append(Drag(f"friction_{node}", row, dry, damping, float(taken(dry, damping, ratio * start))))
             taken_up.append((row, Level(frame.time, -taken(dry, damping, ratio * frame.value))))
         return Acting(taken_up=tuple(taken_up), drags=tuple(drags))
-
-    def _summed(self, torque: Array) -> Array:
-        """What the throws have (throws, …) as what the nodes have."""
-        return torque if len(self.nodes) > 1 else torque.sum(axis=0, keepdims=True)
 
     def _gas(self, rows: Sequence[Array]) -> tuple[Source, ...]:
         motored, burnt = self.profiles()
@@ -162,10 +147,7 @@ class CylinderTorques:
         """The charge of each cylinder, (c − 1) A x' p being its torque beyond that of the motored engine."""
         if not self.feedback:
             return ()
-        engine, layout = self.engine, self.engine.layout
-        pressures = engine.operated(self.speed, self._motored).coefficients[0] @ engine.pressure_shapes.shapes
-        shapes = [through(engine.cylinder.lever * p, 2.0) for p in pressures]
-        ratios = [through(engine.crankcase_pressure / p, 2.0) for p in pressures]
+        engine, layout, (shapes, ratios) = self.engine, self.engine.layout, self._worked.charge
         gas = engine.gas if isinstance(engine.gas, CombustionCycle) else CombustionCycle()
         window = gas.exhaust_opening, CYCLE + gas.intake_closing
         found = []
@@ -195,5 +177,66 @@ class CylinderTorques:
         time = speed.crossings(np.linspace(*speed.range, SQUARES))
         level = Level(time, speed.at(time) ** 2)
         follows = float(self.feedback)
-        profiles = [through(torque, 2.0) for torque in self._summed(throws)]
+        profiles = [through(torque, 2.0) for torque in _on_nodes(throws, len(self.nodes) > 1)]
         return tuple(Source(row, p, level, follows) for row, p in zip(rows, profiles, strict=True))
+
+
+class _Worked(NamedTuple):
+    """What an operating point of an engine comes to: profiles of each node ``motored`` and what is ``burning``, the
+    ``friction`` of the motored engine on each node [Nm], at standstill and what its speed adds, and of each group of
+    cylinders the torque of its ``charge`` and the crankcase's pressure over its own."""
+
+    motored: tuple[Profile, ...]
+    burning: tuple[Profile, ...]
+    friction: tuple[Array, Array]
+    charge: tuple[tuple[Profile, ...], tuple[Profile, ...]]
+
+
+class _Same(NamedTuple):
+    """An engine that is asked by what it is, not by what it holds."""
+
+    engine: Engine
+
+    def __hash__(self) -> int:
+        return id(self.engine)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.engine is self.engine
+
+
+@lru_cache(maxsize=KEPT)
+def _worked_out(same: _Same, speed: float, torque: float, each: bool) -> _Worked:
+    """The same for every throw, ``each`` on a node of its own, or for all of them on one."""
+    engine, least = same.engine, float(same.engine.motored_torque(speed))
+    nothing = least + ABOVE * abs(least)  # brake torque of the motored engine
+    motored, burning = (
+        _on_nodes(engine.torque(speed, brake, crank_angle_grid(SAMPLES), reciprocating=False), each)
+        for brake in (nothing, torque)
+    )
+    friction = _friction(engine, speed, nothing, each)
+    pressures = engine.operated(speed, nothing).coefficients[0] @ engine.pressure_shapes.shapes
+    return _Worked(
+        _profiles(motored + np.add(*friction)[:, None]),
+        _profiles(burning - motored),
+        friction,
+        (_profiles(engine.cylinder.lever * pressures), _profiles(engine.crankcase_pressure / pressures)),
+    )
+
+
+def _friction(engine: Engine, speed: float, motored: float, each: bool) -> tuple[Array, Array]:
+    """Friction of the motored engine on each node [Nm]: at standstill, and what its speed adds."""
+    arm = engine.cylinder.displacement / CYCLE
+    law = engine.friction
+    own = arm * float(law.base(engine.mean_piston_speed(speed)) - law.base(0.0))
+    whole = engine.mean_torque_split(speed, motored).friction
+    more = own * engine.layout.throw_members.sum(axis=1)
+    return _on_nodes(whole - more, each), _on_nodes(more, each)
+
+
+def _on_nodes(torque: Array, each: bool) -> Array:
+    """What the throws have (throws, …) as what the nodes have."""
+    return torque if each else torque.sum(axis=0, keepdims=True)
+
+
+def _profiles(rows: Array) -> tuple[Profile, ...]:
+    return tuple(through(row, 2.0) for row in rows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -99,10 +99,9 @@ def transient(
     given = {"hold": hold, "levels": levels, "reference": reference, "reference_time": reference_time}
     problem = Problem.of(system, drives, speed, **given)  # type: ignore[arg-type]
     kept(keep, system.nodes, system.connections.names)
-    state = starting(start, problem.system, problem.acting, problem.hold, problem.start_speed)
+    accuracy = Accuracy(_fitting(step, time), method, spectral_radius, angle_error, tolerance)
     notes = {"switched": words} if (words := _switching(problem)) else {}
-    step = _fitting(step, time)
-    run = Run(problem, Accuracy(step, method, spectral_radius, angle_error, tolerance), progress, notes)
+    run, state = Run(problem, accuracy, progress, notes), started(problem, start)
     state = resumed(start, state, problem, run.accuracy)
     moments = wanted(output, time)
     told = run.over(state, time, moments) if isinstance(moments, float) else run.at(state, time, moments)
@@ -110,6 +109,16 @@ def transient(
     settings = {"step": run.accuracy.step, "method": method, "spectral_radius": spectral_radius}
     found = presented(problem, told, keep, reference=problem.reference_node, **settings, **run.notes)
     return resumable(found, problem, told.end, run.accuracy)
+
+
+def started(problem: Problem, start: object) -> MotionState:
+    """The state that a ``start`` means."""
+    return starting(start, problem.system, problem.acting, problem.hold, problem.start_speed)
+
+
+def run_of(problem: Problem, step: float, time: float) -> Run:
+    """A run by the default method over a ``time`` [s], for who takes its pieces as they come and keeps none."""
+    return Run(problem, Accuracy(_fitting(step, time)))
 
 
 def _switching(problem: Problem) -> str:
@@ -145,22 +154,28 @@ class Run:
 
     def over(self, state: MotionState, time: float, output: float = 0.0) -> Marched:
         """Everything from a state on over a ``time`` [s], kept at intervals of ``output`` [s]."""
-        total = max(round(time / self.accuracy.step), 1)
-        every = max(round(output / self.accuracy.step), 1) if output else 1 + total // MOST_SAMPLES
-        length = max(int(np.ceil(total / PIECES)), FEWEST)
-        length += -length % every
         parts: list[Marched] = []
-        begun, left, status = clock.perf_counter(), total, COMPLETE
+        begun, status = clock.perf_counter(), COMPLETE
         try:
-            while left > 0:
-                parts.append(self._piece(parts[-1].end if parts else state, min(length, left), every, total))
-                left -= length
-                self._tell(parts[-1].end.time, state.time + time, begun, parts[-1].end.time - state.time)
+            for part in self.pieces(state, time, output):
+                parts.append(part)
+                self._tell(part.end.time, state.time + time, begun, part.end.time - state.time)
         except KeyboardInterrupt:
             if not parts:
                 raise
             status = f"interrupted at {parts[-1].end.time:.6g} s"
         return together(parts, status)
+
+    def pieces(self, state: MotionState, time: float, output: float = 0.0) -> Iterator[Marched]:
+        """The same piece by piece, each from the end of the one before."""
+        total = max(round(time / self.accuracy.step), 1)
+        every = max(round(output / self.accuracy.step), 1) if output else 1 + total // MOST_SAMPLES
+        length = max(int(np.ceil(total / PIECES)), FEWEST)
+        length += -length % every
+        for left in range(total, 0, -length):
+            part = self._piece(state, min(length, left), every, total)
+            yield part
+            state = part.end
 
     def _piece(self, state: MotionState, steps: int, every: int, total: int) -> Marched:
         """One piece, with halved steps where the method's own production asks for it."""

@@ -148,17 +148,22 @@ def steady_map(
     """
     names = model.chosen_gears(gears)
     at, loads = (np.atleast_1d(np.asarray(v, dtype=float)) for v in (speeds, torques))
-    hold = model.landmarks.load
     rows = []
     for name in names:
-        system = assemble(model.detailed().powertrain(name))
         drives = [[engine_drive(model, speed, torque, highest_order, base_order) for speed in at] for torque in loads]
-        own = _rows(system, at, drives, {"hold": hold, "parts": PARTS, **settings})
-        rows.append(xr.concat(own, "torque_value", **_JOIN))
+        rows.append(xr.concat(settled_rows(model, name, at, drives, **settings), "torque_value", **_JOIN))
     found = xr.concat(rows, "gear", **_JOIN).rename(value="speed_value")
     found = found.drop_vars("speed", errors="ignore").rename(speed_value="speed", torque_value="mean_torque")
     found = found.assign_coords(gear=names, mean_torque=loads, speed=at)
     return of_model(found.assign_attrs(analysis="steady map in time"), model)
+
+
+def settled_rows(
+    model: Model, gear: str, speeds: Array, drives: Sequence[Sequence[Excitation]], **settings: Any
+) -> list[xr.Dataset]:
+    """Rows of such a map in one ``gear``, each over ``value``, the ``speeds`` [rad/s], with a drive for every speed."""
+    system = assemble(model.detailed().powertrain(gear))
+    return _rows(system, speeds, drives, {"hold": model.landmarks.load, "parts": PARTS, **settings})
 
 
 def _rows(

@@ -14,6 +14,7 @@ from torsional.files.scenario import load_scenario
 from torsional.files.scenario_blocks import Scenario
 from torsional.laws import Law
 from torsional.model import Model
+from torsional.numerics.arrays import Array
 from torsional.results import of_model
 from torsional.solvers.transient.run import Progress
 from torsional.solvers.transient.speed_profile import as_speed
@@ -50,33 +51,30 @@ def run_scenario(model: Model, scenario: Scenario | str, progress: Progress | No
 
 def run_plan(plan: Plan, progress: Progress | None = None) -> xr.Dataset:
     """The run of a plan."""
-    _refuse_coarse(plan)
+    refuse_coarse(plan)
     step = plan.step or STEP
     run, turning = moved(plan, step, max(OUTPUT, step), progress)
-    plan, again = _released(plan, run)
+    plan, again = released(plan, run.time.values, run.angular_velocity.sel(node=plan.crank).values)
     if again:
         run, turning = moved(plan, step, max(OUTPUT, step), progress)
     run = _from_zero(run)
-    if plan.step is not None and "refined" in run.attrs:
-        told = {"found": f"{step:g} s", "allowed": f"about {run.attrs['step']:g} s"}
-        raise ModelError("the step is too large for this line", where="step", **told, remedy="or leave the key out")
+    refuse_refined(plan, "refined" in run.attrs, run.attrs["step"])
     named = {"title": plan.title, "gear": plan.gear, "crank": plan.crank}
     listed = {"springs": plan.springs, "watched": plan.watched, "looked_at": plan.nodes}
     told = {key: json.dumps(names) for key, names in listed.items()}
-    run = _with_tabs(run, plan)
+    run = with_tabs(run, plan.springs, plan.inner)
     systems = [own.system for own in turning]
     figures = with_figures(run, systems, (*plan.springs, *plan.watched), plan.inner)
     whole = phased(scheduled(figures, plan.shown), plan.phases, plan.crank)
     return whole.assign_attrs({**named, **told})
 
 
-def _released(plan: Plan, run: xr.Dataset) -> tuple[Plan, bool]:
-    """The plan with the starter off from the moment on at which the crank reached its speed in a ``run`` of the plan;
-    whether the starter pushed again behind it, so that the run is another one."""
+def released(plan: Plan, time: Array, crank: Array) -> tuple[Plan, bool]:
+    """The plan with the starter off from the moment on at which the ``crank`` reached its speed [rad/s] over ``time``
+    [s] in a run of the plan; whether the starter pushed again behind it, so that the run is another one."""
     if plan.release is None:
         return plan, False
     speed, free, until, off = plan.release
-    time, crank = run.time.values, run.angular_velocity.sel(node=plan.crank).values
     reached = time[(crank >= speed) & (time < until)]
     if not reached.size:
         return plan, False
@@ -84,7 +82,7 @@ def _released(plan: Plan, run: xr.Dataset) -> tuple[Plan, bool]:
     return off(float(reached[0])), bool(pushed.any())
 
 
-def _refuse_coarse(plan: Plan) -> None:
+def refuse_coarse(plan: Plan) -> None:
     """Refuse steps over which the crank turns too far for its torques to be seen."""
     most = FINEST * 2 * np.pi / max(*as_speed(plan.speed).range, SLOWEST)
     if plan.step is not None and plan.step > most:
@@ -93,6 +91,13 @@ def _refuse_coarse(plan: Plan) -> None:
             "allowed": f"a hundredth of a turn of the crank, {show(most, 'time')}",
         }
         raise ModelError("the step is too large", where="step", **told)
+
+
+def refuse_refined(plan: Plan, refined: bool, step: float) -> None:
+    """Refuse a step that was asked for and had to be made smaller, ``step`` [s] at the end."""
+    if plan.step is not None and refined:
+        told = {"found": f"{plan.step:g} s", "allowed": f"about {step:g} s"}
+        raise ModelError("the step is too large for this line", where="step", **told, remedy="or leave the key out")
 
 
 def _from_zero(run: xr.Dataset) -> xr.Dataset:
@@ -107,15 +112,15 @@ def _from_zero(run: xr.Dataset) -> xr.Dataset:
     return kept.assign({name: (all_ - all_.isel(time=0)).assign_attrs(all_.attrs) for name, all_ in counted.items()})
 
 
-def _with_tabs(run: xr.Dataset, plan: Plan) -> xr.Dataset:
+def with_tabs(run: xr.Dataset, springs: Sequence[str], inner: Collection[str]) -> xr.Dataset:
     """The run with what the tabs of a detailed dual mass flywheel carry counted as its torque, beside its end stop."""
-    inner = [str(name) for name in run.element.values if name in plan.inner]
-    if not any(name.endswith(tuple(TABS)) for name in inner) or len(plan.springs) != 1:
+    parts = [str(name) for name in run.element.values if name in inner]
+    if not any(name.endswith(tuple(TABS)) for name in parts) or len(springs) != 1:
         return run
     whole = run.torque
     for end, sign in TABS.items():
-        tabs = [name for name in inner if name.endswith(end)]
-        whole = whole + sign * run.torque.sel(element=tabs).sum("element") * (run.element == plan.springs[0])
+        tabs = [name for name in parts if name.endswith(end)]
+        whole = whole + sign * run.torque.sel(element=tabs).sum("element") * (run.element == springs[0])
     return run.assign(torque=whole.transpose(*run.torque.dims).assign_attrs(run.torque.attrs))
 
 

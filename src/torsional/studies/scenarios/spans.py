@@ -21,9 +21,7 @@ ENGAGING, STORED = "engaging", ("kinetic", "strain")
 
 def moved(plan: Plan, step: float, output: float, progress: Progress | None) -> tuple[xr.Dataset, tuple[Turning, ...]]:
     """The run of a plan from its settling on, and its lines with their systems."""
-    frame = float(plan.speed) if plan.later else 0.0  # type: ignore[arg-type]
-    turning = tuple(Turning.of(line, frame) for line in (plan.line, *(span.line for span in plan.later)))
-    ends = [*(span.at for span in plan.later), plan.duration]
+    turning, ends = lines_of(plan)
     state, runs = plan.started(turning[0].system).since(-plan.settling), []
     for place, (own, end) in enumerate(zip(turning, ends, strict=True)):
         if place:
@@ -33,6 +31,13 @@ def moved(plan: Plan, step: float, output: float, progress: Progress | None) -> 
             break
         state = MotionState.ending(runs[-1], own.system)
     return (_as_one(runs, turning) if plan.later else runs[0]), turning
+
+
+def lines_of(plan: Plan) -> tuple[tuple[Turning, ...], list[float]]:
+    """The lines of a plan with their systems, and when each ends [s]."""
+    frame = float(plan.speed) if plan.later else 0.0  # type: ignore[arg-type]
+    turning = tuple(Turning.of(line, frame) for line in (plan.line, *(span.line for span in plan.later)))
+    return turning, [*(span.at for span in plan.later), plan.duration]
 
 
 def _one(

@@ -22,7 +22,7 @@ from torsional.solvers.modal import damped_frequencies, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.down_speeding import half_swing
-from torsional.studies.scenarios.running import run_scenario
+from torsional.studies.scenarios.peaks import spring_peaks
 from torsional.studies.sweeps.batch import Asked, Batch
 from torsional.system import BoolArray, System
 
@@ -270,10 +270,17 @@ class TransientRun(Asking):
     def __call__(self, model: Model) -> xr.Dataset:
         """Largest and smallest ``torque`` and ``twist`` of the springs."""
         assert self._block is not None  # read with the plan
-        found = run_scenario(model, self._block)
-        springs = [name for name in model.landmarks.springs if name in found.element.values]
-        names = [n for n in ("torque_lowest", "torque_highest", "twist_lowest", "twist_highest") if n in found]
-        return found[names].sel(element=springs).drop_attrs(deep=False)
+        found = spring_peaks(model, self._block)
+        values = {"torque": (found.torque, "torque"), "twist": (found.twist, "relative_angle")}
+        return labelled(
+            {
+                f"{name}_{end}": (("element",), ends[row], quantity)
+                for name, (ends, quantity) in values.items()
+                for row, end in enumerate(("lowest", "highest"))
+            },
+            {"element": (np.array(found.springs, dtype=str), "")},
+            analysis="transient",
+        )
 
 
 Analysis: TypeAlias = ModesRun | ResponseRun | MapRun | TransientRun

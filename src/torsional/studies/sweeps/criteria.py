@@ -19,12 +19,13 @@ from torsional.studies.sweeps.absorbers import EnvelopeRun, FrictionRun, Inertia
 from torsional.studies.sweeps.analyses import Analysis, Asking
 from torsional.studies.sweeps.batch import Batch
 from torsional.studies.sweeps.periodic import PeriodicRun
+from torsional.studies.sweeps.settled import SettledRun
 from torsional.studies.sweeps.verdicts import ClaimsRun
 from torsional.studies.sweeps.work import Together
 from torsional.system import BoolArray
 from torsional.units import quoted, read, read_range
 
-Single: TypeAlias = Analysis | ClaimsRun | EnvelopeRun | InertiaRun | FrictionRun | PeriodicRun
+Single: TypeAlias = Analysis | ClaimsRun | EnvelopeRun | InertiaRun | FrictionRun | PeriodicRun | SettledRun
 """One analysis."""
 WORST: Mapping[str, Callable[[Array], Any]] = {"largest": np.max, "smallest": np.min, "mean": np.mean}
 CLOSE = 1e-9

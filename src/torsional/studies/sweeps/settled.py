@@ -1,0 +1,89 @@
+"""Motions in time as they settle, for plans: stops, gaps, friction and springs in detail at operating points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar, Literal
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+
+from torsional.engine import Excitation
+from torsional.engine.orders import HIGHEST_ORDER
+from torsional.files.scenario_blocks import Time, TorqueOrZero
+from torsional.files.schema.fields import Order
+from torsional.model import Model
+from torsional.numerics.arrays import Array
+from torsional.results import Variable, labelled
+from torsional.solvers.transient.sweeps import engine_drive, settled_rows
+from torsional.studies.down_speeding import half_swing
+from torsional.studies.scenarios.lines import inner_parts
+from torsional.studies.scenarios.running import STEP, with_tabs
+from torsional.studies.sweeps.analyses import OverSpeed
+
+
+class SettledRun(OverSpeed):
+    """The motion that time stepping settles on over speed, under mean torques or at full load."""
+
+    gives: ClassVar[Mapping[str, str]] = {
+        "acceleration_swing": "acceleration",
+        "twist_swing": "relative_angle",
+        "torque_swing": "torque",
+        "periods": "number",
+        "method_share": "ratio",
+    }
+    analysis: Literal["settled"]
+    torques: list[TorqueOrZero] = Field(default_factory=list, description="mean; default: full load at each speed")
+    highest_order: Order = Field(HIGHEST_ORDER, description="of the engine's torque and of the motion")
+    step: Time = Field(STEP, description="of time, made to fit the period of the drive")
+
+    def __call__(self, model: Model) -> xr.Dataset:
+        """Half the swing of a node's acceleration, ``acceleration_swing``, and of the absorber's springs and the clutch
+        their ``twist_swing`` and ``torque_swing``, over mean torque, where some are named, and speed.
+
+        Absorbers that have details are taken in detail.  ``periods`` of the drive after which the motion repeats
+        itself, 0 where it never does; ``method_share``: energy that the time steps made or lost of their own.
+        """
+        marks, speeds, gear = model.landmarks, self.speeds(model), model.gear_name(self.gear or None)
+        found = settled_rows(model, gear, speeds, self._drives(model, speeds), step=self.step)
+        rows = [with_tabs(row, marks.springs, inner_parts(model)) for row in found]
+        names = [name for name in marks.observed_elements if name in rows[0].element.values]
+        shaken = np.stack([_shaken(row, self.place(model)) for row in rows])
+        values = {"acceleration_swing": self._over(half_swing(shaken, rows[0].order.values), "acceleration")}
+        for name, quantity in (("twist", "relative_angle"), ("torque", "torque")):
+            whole = np.stack([row[name].sel(element=names).transpose("value", "element", "order") for row in rows])
+            values[f"{name}_swing"] = self._over(half_swing(whole, rows[0].order.values), quantity, "element")
+        values["periods"] = self._over(np.stack([row.periods.values for row in rows]), "number")
+        values["method_share"] = self._over(np.stack([row.method_share.values for row in rows]), "ratio")
+        return self._told(values, speeds, names)
+
+    def _drives(self, model: Model, speeds: Array) -> list[list[Excitation]]:
+        """The engine's torques of every row, one for each speed."""
+        over = [np.full(speeds.size, torque) for torque in self.torques] or [model.full_load(speeds)]
+        return [
+            [
+                engine_drive(model, speed, torque, self.highest_order)
+                for speed, torque in zip(speeds.tolist(), row.tolist(), strict=True)
+            ]
+            for row in over
+        ]
+
+    def _over(self, values: Array, quantity: str, *further: str) -> Variable:
+        """A variable from values (rows, speeds, …)."""
+        whole = ("mean_torque", "speed", *further)
+        return (whole, values, quantity) if self.torques else (whole[1:], values[0], quantity)
+
+    def _told(self, values: Mapping[str, Variable], speeds: Array, names: Sequence[str]) -> xr.Dataset:
+        torques = {"mean_torque": (np.array(self.torques), "torque")} if self.torques else {}
+        coordinates = {**torques, "speed": (speeds, "speed"), "element": (np.array(names, dtype=str), "")}
+        data = labelled(values, coordinates, analysis="settled")
+        for name in ("acceleration_swing", "twist_swing", "torque_swing"):
+            data[name].attrs["amplitude"] = "half peak-to-peak"
+        return data
+
+
+def _shaken(row: xr.Dataset, node: str) -> Array:
+    """Acceleration orders (speeds, orders) [rad/s²] of a node, complex 0-peak."""
+    angle = row.angle.sel(node=node).transpose("value", "order").values
+    return np.asarray(-np.square(np.multiply.outer(row.value.values, row.order.values)) * angle)
