@@ -137,29 +137,36 @@ def vibrating(system: System, acting: Acting, hold: str, speed: float) -> Motion
     rows = system.connections.weights
     stiffness, damping = (rows.T * k) @ rows, (rows.T * d) @ rows
     moved, rate = np.zeros(len(angle)), np.zeros(len(angle))
-    for order, torque in harmonics(acting, len(angle), speed).items():
-        w = order * speed
-        q = np.linalg.solve(stiffness + 1j * w * damping - w * w * system.M, torque)
-        moved, rate = moved + q.real, rate + (1j * w * q).real
+    driven = harmonics(acting, len(angle), speed)
+    w = np.array(list(driven))[:, None, None] * speed
+    loads = np.array(list(driven.values())).reshape(len(w), len(angle), 1)
+    q = np.linalg.solve(stiffness + 1j * w * damping - w * w * system.M, loads)[..., 0]
+    for own, turning in zip(q, w[:, 0, 0], strict=True):
+        moved, rate = moved + own.real, rate + (1j * turning * own).real
     return MotionState(0.0, angle + moved, rate, still.memory, still.integral)
 
 
 def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, ComplexArray]:
     """Complex 0-peak torques on the coordinates by order of the frame's rotation, at the levels of the time zero."""
-    found: dict[float, ComplexArray] = {}
     parts = [(s.row, s.profile, 1.0 if s.level is None else float(s.level.at(0.0)), s.phase) for s in acting.sources]
-    parts += [(c.row, _crank_profile(c), speed**2, c.phase) for c in acting.cranks]
-    for row, profile, level, phase in parts:
-        if profile is None or not level:
-            continue
-        series = level * np.fft.rfft(profile.coefficients[:, 0]) * 2 / len(profile.coefficients)
-        counts = np.abs(series) > SMALL * np.abs(series).max(initial=0.0)
-        for h in np.flatnonzero(counts[: len(series) - 1])[: 2 * HARMONICS]:
-            if h > 0:
-                order = round(h / profile.period, 9)
-                turned = series[h] * np.exp(1j * order * phase)
-                found[order] = found.get(order, np.zeros(coordinates, dtype=complex)) + row * turned
-    return found
+    cranks = {crank[2:]: _crank_profile(crank) for crank in acting.cranks}
+    parts += [(c.row, cranks[c[2:]], speed**2, c.phase) for c in acting.cranks]
+    told = [(row, *_lines(profile, level), phase) for row, profile, level, phase in parts if profile is not None and level]
+    places = {order: place for place, order in enumerate(dict.fromkeys(o for _, own, _, _ in told for o in own))}
+    table = np.zeros((len(places), coordinates), dtype=complex)
+    for row, orders, series, phase in told:
+        turned = series * np.exp(1j * np.array(orders) * phase)
+        table[[places[order] for order in orders]] += row * turned[:, None]
+    return dict(zip(places, table, strict=True))
+
+
+def _lines(profile: Profile, level: float) -> tuple[list[float], ComplexArray]:
+    """The orders of a profile at a level that count, above 0, and their complex 0-peak torques."""
+    series = level * np.fft.rfft(profile.coefficients[:, 0]) * 2 / len(profile.coefficients)
+    size = np.abs(series)
+    counts = np.flatnonzero((size > SMALL * size.max(initial=0.0))[: len(series) - 1])[: 2 * HARMONICS]
+    counts = counts[counts > 0]
+    return [round(h / profile.period, 9) for h in counts.tolist()], series[counts]
 
 
 def _crank_profile(crank: Crank) -> Profile:
