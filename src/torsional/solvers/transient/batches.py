@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numba
 import numpy as np
 import xarray as xr
 
@@ -32,6 +33,7 @@ from torsional.numerics.stepping.plan import Plan, matrix_of
 from torsional.numerics.stepping.state import MEMORY, Entry, Q, V
 from torsional.numerics.stepping.state import State as Standing
 from torsional.solvers.transient.acting import assembled
+from torsional.solvers.transient.drives import OrderTorques
 from torsional.solvers.transient.marching import Accuracy
 from torsional.solvers.transient.problem import Levels, Problem
 from torsional.solvers.transient.starts import MotionState, starting
@@ -76,7 +78,7 @@ class Batch:
     """Points of one ``system``: the ``drives`` of rows, each over rising speeds."""
 
     system: System
-    drives: Sequence[Sequence[Excitation]]
+    drives: Sequence[Sequence[Excitation | OrderTorques]]
     asked: Asked
 
     @cached_property
@@ -159,7 +161,9 @@ _SHARED = ("sources", "source_places", "level_start", "leaks")
 
 
 def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """As many as there are, or as compiled code may use in a process of many."""
+    found = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(found, int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
 
 
 class Row:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +14,7 @@ from torsional.engine import Excitation
 from torsional.errors import ModelError
 from torsional.numerics.arrays import Array
 from torsional.solvers.transient.acting import Acting, Drive, Governing, Source, row_of
-from torsional.solvers.transient.profiles import Level, level_of, of_orders
+from torsional.solvers.transient.profiles import Level, Profile, level_of, of_orders
 from torsional.solvers.transient.speed_profile import SpeedProfile, as_speed
 from torsional.system import System
 
@@ -44,19 +45,21 @@ class OrderTorques:
         if at.ndim > 1:
             raise ModelError("the excitation has more than one axis of speeds", where="excitation")
         sources: list[Source] = []
-        for weight, harmonics in zip(self._weights(at, speed), torque, strict=True):
+        for point, (weight, harmonics) in enumerate(zip(self._weights(at, speed), torque, strict=True)):
             if weight is not None and not weight.value.any():
                 continue
+            if point not in self._profiles:
+                self._profiles[point] = tuple(of_orders(given.orders, own) for own in harmonics)
             sources += [
-                Source(
-                    row_of(system, node),
-                    of_orders(given.orders, harmonics[i]),
-                    weight,
-                    self._feedback(system, node),
-                )
-                for i, node in enumerate(given.nodes)
+                Source(row_of(system, node), profile, weight, self._feedback(system, node))
+                for node, profile in zip(given.nodes, self._profiles[point], strict=True)
             ]
         return Acting(tuple(sources), taken_up=tuple(_mean(source) for source in sources))
+
+    @cached_property
+    def _profiles(self) -> dict[int, tuple[Profile, ...]]:
+        """Torques of the nodes by operating point, as far as they were asked for; the same for every line."""
+        return {}
 
     def _feedback(self, system: System, node: str) -> float:
         ratio = float(system.speed_ratio[system.node_index(node)])

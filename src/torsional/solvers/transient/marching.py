@@ -99,7 +99,7 @@ def motion_lost(told: Marched, accuracy: Accuracy, where: str) -> ModelError:
 
 def marched(problem: Problem, state: MotionState, steps: int, accuracy: Accuracy, every: int = 1) -> Marched:
     """Go on from a state for ``steps`` steps and keep ``every`` one of them, the first and the last included."""
-    kept = np.unique(np.append(np.arange(0, steps, every), steps))
+    kept = np.append(np.arange(0, steps, every), steps)
     if accuracy.method == "explicit":
         return _explicit(problem, state, state.time + accuracy.step * kept, accuracy)
     if accuracy.method == "exact":

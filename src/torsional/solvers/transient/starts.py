@@ -151,7 +151,9 @@ def harmonics(acting: Acting, coordinates: int, speed: float) -> dict[float, Com
     parts = [(s.row, s.profile, 1.0 if s.level is None else float(s.level.at(0.0)), s.phase) for s in acting.sources]
     cranks = {crank[2:]: _crank_profile(crank) for crank in acting.cranks}
     parts += [(c.row, cranks[c[2:]], speed**2, c.phase) for c in acting.cranks]
-    told = [(row, *_lines(profile, level), phase) for row, profile, level, phase in parts if profile is not None and level]
+    told = [
+        (row, *_lines(profile, level), phase) for row, profile, level, phase in parts if profile is not None and level
+    ]
     places = {order: place for place, order in enumerate(dict.fromkeys(o for _, own, _, _ in told for o in own))}
     table = np.zeros((len(places), coordinates), dtype=complex)
     for row, orders, series, phase in told:

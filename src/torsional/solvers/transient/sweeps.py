@@ -20,6 +20,7 @@ from torsional.results import of_model
 from torsional.solvers.periodic.machine import checked_engine, common_orders
 from torsional.solvers.transient.batch_results import row_dataset
 from torsional.solvers.transient.batches import Asked, Batch
+from torsional.solvers.transient.drives import OrderTorques
 from torsional.solvers.transient.honesty import said
 from torsional.solvers.transient.problem import Drives
 from torsional.solvers.transient.steady import steady_state
@@ -159,7 +160,7 @@ def steady_map(
 
 
 def settled_rows(
-    model: Model, gear: str, speeds: Array, drives: Sequence[Sequence[Excitation]], **settings: Any
+    model: Model, gear: str, speeds: Array, drives: Sequence[Sequence[Excitation | OrderTorques]], **settings: Any
 ) -> list[xr.Dataset]:
     """Rows of such a map in one ``gear``, each over ``value``, the ``speeds`` [rad/s], with a drive for every speed."""
     system = assemble(model.detailed().powertrain(gear))
@@ -167,7 +168,7 @@ def settled_rows(
 
 
 def _rows(
-    system: System, speeds: Array, drives: Sequence[Sequence[Excitation]], settings: dict[str, Any]
+    system: System, speeds: Array, drives: Sequence[Sequence[Excitation | OrderTorques]], settings: dict[str, Any]
 ) -> list[xr.Dataset]:
     """The rows of one gear: in one compiled loop, or point by point where that cannot be."""
     reason = "settings of its own"
@@ -180,7 +181,9 @@ def _rows(
     return [row.assign_attrs(one_by_one=reason) for row in found]
 
 
-def _along(system: System, speeds: Array, drives: Sequence[Excitation], settings: dict[str, Any]) -> xr.Dataset:
+def _along(
+    system: System, speeds: Array, drives: Sequence[Excitation | OrderTorques], settings: dict[str, Any]
+) -> xr.Dataset:
     """One row of the map, point by point."""
     at = dict(zip(speeds.tolist(), drives, strict=True))
     return steady_sweep(system, at.__getitem__, speeds, directions=("up",), **settings).isel(direction=0, drop=True)

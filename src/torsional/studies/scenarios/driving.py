@@ -9,10 +9,12 @@ from torsional.files.scenario_blocks import Scenario, SpeedGovernor
 from torsional.files.scenario_schema import ClutchEngagement, Stall, TipIn, TipOut, TractionLoss
 from torsional.model import Model
 from torsional.powertrain import Powertrain
+from torsional.solvers.operating import mean_state
 from torsional.solvers.transient.acting import Drive
 from torsional.studies.scenarios import lines, sizes
 from torsional.studies.scenarios.plan import Plan
 from torsional.studies.scenarios.schedule import cylinders, fuel_cut, heat_for, pulse, ramp, speed_governor
+from torsional.system import assemble
 from torsional.units import show
 
 LOWEST, LOW, MIDDLE = 1.0 / 7.0, 2.0 / 7.0, 4.0 / 7.0
@@ -138,10 +140,11 @@ def traction_loss(block: TractionLoss, model: Model) -> Plan:
 
 def within_stop(model: Model, gear: str, **torques: float) -> None:
     """Refuse mean engine torques at which an absorber spring rests on its stop; the names are those of the keys."""
-    from torsional.solvers.operating import at_operating_point
-
+    system = assemble(model.powertrain(gear))
+    if not system.elements:
+        return
     for key, torque in torques.items():
-        _, point = at_operating_point(model, torque, gear)
+        point = mean_state(model, system, torque)
         for spring in model.landmarks.springs:
             if point.stage(spring) == "stop":
                 law = point.laws[point.names.index(spring)]

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
-from torsional.engine import Excitation
+from torsional.engine import Engine
 from torsional.engine.orders import HIGHEST_ORDER
 from torsional.files.scenario_blocks import Time, TorqueOrZero
 from torsional.files.schema.fields import Order
 from torsional.model import Model
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import Variable, labelled
+from torsional.solvers.transient.drives import OrderTorques
 from torsional.solvers.transient.sweeps import engine_drive, settled_rows
 from torsional.studies.down_speeding import half_swing
 from torsional.studies.scenarios.lines import inner_parts
@@ -37,6 +38,7 @@ class SettledRun(OverSpeed):
     torques: list[TorqueOrZero] = Field(default_factory=list, description="mean; default: full load at each speed")
     highest_order: Order = Field(HIGHEST_ORDER, description="of the engine's torque and of the motion")
     step: Time = Field(STEP, description="of time, made to fit the period of the drive")
+    _known: tuple[Engine, Any, list[list[OrderTorques]]] | None = PrivateAttr(None)
 
     def __call__(self, model: Model) -> xr.Dataset:
         """Half the swing of a node's acceleration, ``acceleration_swing``, and of the absorber's springs and the clutch
@@ -58,16 +60,20 @@ class SettledRun(OverSpeed):
         values["method_share"] = self._over(np.stack([row.method_share.values for row in rows]), "ratio")
         return self._told(values, speeds, names)
 
-    def _drives(self, model: Model, speeds: Array) -> list[list[Excitation]]:
-        """The engine's torques of every row, one for each speed."""
+    def _drives(self, model: Model, speeds: Array) -> list[list[OrderTorques]]:
+        """The engine's torques of every row, one for each speed; made once for all designs that share an engine."""
         over = [np.full(speeds.size, torque) for torque in self.torques] or [model.full_load(speeds)]
-        return [
-            [
-                engine_drive(model, speed, torque, self.highest_order)
-                for speed, torque in zip(speeds.tolist(), row.tolist(), strict=True)
+        asked = (model.landmarks, speeds.tolist(), [row.tolist() for row in over])
+        if self._known is None or self._known[0] is not model.engine or self._known[1] != asked:
+            made = [
+                [
+                    OrderTorques(engine_drive(model, speed, torque, self.highest_order))
+                    for speed, torque in zip(speeds.tolist(), row.tolist(), strict=True)
+                ]
+                for row in over
             ]
-            for row in over
-        ]
+            self._known = model.running_engine, asked, made
+        return self._known[2]
 
     def _over(self, values: Array, quantity: str, *further: str) -> Variable:
         """A variable from values (rows, speeds, …)."""
@@ -83,7 +89,7 @@ class SettledRun(OverSpeed):
         return data
 
 
-def _shaken(row: xr.Dataset, node: str) -> Array:
+def _shaken(row: xr.Dataset, node: str) -> ComplexArray:
     """Acceleration orders (speeds, orders) [rad/s²] of a node, complex 0-peak."""
     angle = row.angle.sel(node=node).transpose("value", "order").values
     return np.asarray(-np.square(np.multiply.outer(row.value.values, row.order.values)) * angle)
