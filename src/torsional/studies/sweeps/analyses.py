@@ -48,9 +48,6 @@ class OverSpeed(Asking):
     gear: GearName = Field("", description="engaged; default: the last listed")
     speed: SpeedRange | None = Field(None, description="default: the operating range in 57 points")
     node: Node = Field("", description="default: the one to be kept quiet")
-    backend: Literal["", "numpy", "jax", "cupy"] = Field(
-        "", description="array library that asks many designs together, as on a GPU; default: the compiled kernel"
-    )
 
     def speeds(self, model: Model) -> Array:
         """The speeds [rad/s] asked."""
@@ -71,6 +68,9 @@ class Linear(OverSpeed):
     """What the linear analyses share beyond that: orders, and designs that are asked together."""
 
     orders: list[Order] = Field(default_factory=list, description="default: the main order")
+    backend: Literal["", "numpy", "jax", "cupy"] = Field(
+        "", description="array library that asks many designs together, as on a GPU; default: the compiled kernel"
+    )
 
     def asked_orders(self, model: Model) -> Array:
         """The orders asked."""

@@ -14,11 +14,11 @@ from torsional.engine.orders import HIGHEST_ORDER
 from torsional.files.scenario_blocks import Time, TorqueOrZero
 from torsional.files.schema.fields import Order
 from torsional.model import Model
-from torsional.numerics.arrays import Array, ComplexArray
+from torsional.numerics.arrays import Array
+from torsional.quantities import swing
 from torsional.results import Variable, labelled
 from torsional.solvers.transient.drives import OrderTorques
 from torsional.solvers.transient.sweeps import engine_drive, settled_rows
-from torsional.studies.down_speeding import half_swing
 from torsional.studies.scenarios.lines import inner_parts
 from torsional.studies.scenarios.running import STEP, with_tabs
 from torsional.studies.sweeps.analyses import OverSpeed
@@ -36,7 +36,7 @@ class SettledRun(OverSpeed):
     }
     analysis: Literal["settled"]
     torques: list[TorqueOrZero] = Field(default_factory=list, description="mean; default: full load at each speed")
-    highest_order: Order = Field(HIGHEST_ORDER, description="of the engine's torque and of the motion")
+    highest_order: Order = Field(HIGHEST_ORDER, description="of the engine's torque")
     step: Time = Field(STEP, description="of time, made to fit the period of the drive")
     _known: tuple[Engine, Any, list[list[OrderTorques]]] | None = PrivateAttr(None)
 
@@ -51,13 +51,14 @@ class SettledRun(OverSpeed):
         found = settled_rows(model, gear, speeds, self._drives(model, speeds), step=self.step)
         rows = [with_tabs(row, marks.springs, inner_parts(model)) for row in found]
         names = [name for name in marks.observed_elements if name in rows[0].element.values]
-        shaken = np.stack([_shaken(row, self.place(model)) for row in rows])
-        values = {"acceleration_swing": self._over(half_swing(shaken, rows[0].order.values), "acceleration")}
+        squared = [np.square(row.value * row.order) for row in rows]
+        shaken = [at * row.angle.sel(node=self.place(model)) for row, at in zip(rows, squared, strict=True)]
+        values = {"acceleration_swing": self._over(_swung(shaken), "acceleration")}
         for name, quantity in (("twist", "relative_angle"), ("torque", "torque")):
-            whole = np.stack([row[name].sel(element=names).transpose("value", "element", "order") for row in rows])
-            values[f"{name}_swing"] = self._over(half_swing(whole, rows[0].order.values), quantity, "element")
-        values["periods"] = self._over(np.stack([row.periods.values for row in rows]), "number")
-        values["method_share"] = self._over(np.stack([row.method_share.values for row in rows]), "ratio")
+            carried = [row[name].sel(element=names) for row in rows]
+            values[f"{name}_swing"] = self._over(_swung(carried), quantity, "element")
+        for name, quantity in (("periods", "number"), ("method_share", "ratio")):
+            values[name] = self._over(np.stack([row[name].values for row in rows]), quantity)
         return self._told(values, speeds, names)
 
     def _drives(self, model: Model, speeds: Array) -> list[list[OrderTorques]]:
@@ -89,7 +90,6 @@ class SettledRun(OverSpeed):
         return data
 
 
-def _shaken(row: xr.Dataset, node: str) -> ComplexArray:
-    """Acceleration orders (speeds, orders) [rad/s²] of a node, complex 0-peak."""
-    angle = row.angle.sel(node=node).transpose("value", "order").values
-    return np.asarray(-np.square(np.multiply.outer(row.value.values, row.order.values)) * angle)
+def _swung(rows: Sequence[xr.DataArray]) -> Array:
+    """Half the swing of orders, (rows, speeds, …)."""
+    return np.stack([swing(row).values for row in rows])
