@@ -78,13 +78,15 @@ def test_lines_that_are_not_made_for_the_loop_say_so(name: str, reason: str) -> 
     assert set(found.kind.values.ravel().tolist()) == {"periodic"}
 
 
-@pytest.mark.parametrize("count, expected", [(4, 4), (None, 1)])
+@pytest.mark.parametrize("count, allowed, expected", [(4, "", 4), (None, "", 1), (4, "1", 1), (4, "9", 4)])
 def test_rows_run_side_by_side_where_processors_are_only_counted(
-    monkeypatch: pytest.MonkeyPatch, count: int | None, expected: int
+    monkeypatch: pytest.MonkeyPatch, count: int | None, allowed: str, expected: int
 ) -> None:
-    """Not every system tells which processors a process may use, and some tell nothing."""
+    """Not every system tells which processors a process may use, and some tell nothing; one of many processes has one
+    thread."""
     monkeypatch.delattr("os.sched_getaffinity", raising=False)
     monkeypatch.setattr("os.cpu_count", lambda: count)
+    monkeypatch.setenv("NUMBA_NUM_THREADS", allowed)
     assert batches._processors() == expected
 
 

@@ -8,7 +8,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numba
 import numpy as np
 import xarray as xr
 
@@ -163,7 +162,8 @@ _SHARED = ("sources", "source_places", "level_start", "leaks")
 def _processors() -> int:
     """As many as there are, or as compiled code may use in a process of many."""
     found = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(found, int(numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+    allowed = os.environ.get("NUMBA_NUM_THREADS", "")
+    return min(found, max(int(allowed), 1)) if allowed.isdecimal() else found
 
 
 class Row:
