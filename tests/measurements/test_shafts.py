@@ -28,6 +28,20 @@ def test_teeth_of_the_gap_are_put_in() -> None:
     assert np.unique(np.rint(behind / (2 * np.pi / 60)) % 60).tolist() == [58, 59]
 
 
+@pytest.mark.parametrize(("teeth", "missing"), [(60, 2), (36, 1), (12, 1), (60, 0), (4, 0)])
+def test_a_record_may_begin_and_end_anywhere(teeth: int, missing: int) -> None:
+    """In a gap or beside one: the same angles, but for whole turns where the gap tells them."""
+    times = RUN.pulses(teeth, missing)
+    whole = tv.shaft_from_pulses(times, teeth, missing=missing)
+    for cut in range(1, 2 * teeth):
+        part = tv.shaft_from_pulses(times[cut : times.size - cut], teeth, missing=missing)
+        there = whole.sel(time=part.time[part.pulse == "measured"].values)
+        off = part.shaft_angle.sel(time=there.time).values - there.shaft_angle.values
+        assert np.ptp(off) < 1e-9
+        assert not missing or off.mean() / (2 * np.pi) == pytest.approx(round(off.mean() / (2 * np.pi)), abs=1e-9)
+        assert not (part.pulse == "lost").any() and not part.sizes["extra_pulse"]
+
+
 def faulty(times: Array, seed: int) -> tuple[Array, int, int]:
     """Some pulses lost, some put in between: at random, in runs of two as well."""
     chance = np.random.default_rng(seed)
@@ -240,3 +254,14 @@ def test_pitch_errors_are_learnt_and_taken_out() -> None:
         tv.tooth_pitch(tv.shaft_from_pulses(pulses(steady), 60), 0.5, 0.75)
     with pytest.raises(tv.ModelError, match="pitch error is wanted for each tooth; found 3; allowed: 60"):
         tv.shaft_from_pulses(pulses(run), 60, pitch=[0.0, 0.1, 0.2])
+
+
+@pytest.mark.parametrize("missing", [0, 2])
+def test_a_speed_that_swings_by_half_within_a_turn(missing: int) -> None:
+    """Cranking: 30 % at order 3 and 15 % at order 1.5, pulses lost and doubled; none is counted wrongly."""
+    cranking = RunUp(200 * RPM, 60 * RPM, 4.0, {3.0: 0.1 + 0j, 1.5: 0.1j})
+    times = cranking.pulses(60, missing)
+    spoilt = np.sort(np.append(np.delete(times, [150, 333, 500]), times[401] + 0.4 * (times[402] - times[401])))
+    shaft = tv.shaft_from_pulses(spoilt, 60, missing=missing)
+    assert angle_error(shaft, cranking) < 0.2 * 2 * np.pi / 60
+    assert shaft.sizes["extra_pulse"] == 1

@@ -14,6 +14,8 @@ Numbers = NDArray[np.int64]
 
 MISFIT = 0.45
 """A pulse is one by fault where intervals fit whole teeth better without it, by this share of a tooth."""
+NEAR = 7
+"""Intervals about one that tell how long it should be."""
 PASSES = 20
 FAULTS = 0.05
 """Share of pulses that may be mended; with more, the wheel is another one or the level is wrong."""
@@ -30,12 +32,12 @@ class Teeth(NamedTuple):
 def numbered(times: Array, teeth: int, missing: int, name: str) -> Teeth:
     """The pulses of a wheel with so many ``teeth`` a turn, the ``missing`` ones of its gap counted.
 
-    An interval is compared with the median of its neighbours: what lasts as long as m of them is m teeth.  A pulse is
+    An interval is compared with those about it: what lasts as long as m of them is m teeth.  A pulse is
     taken out where the intervals beside it fit whole teeth only without it.  ModelError where more than one pulse in
     twenty is lost or too many, where pulses stop for half a turn, and where the gaps are not where the wheel has them.
     """
-    kept, extra = _without_extra(times, teeth, name)
-    spans = _spans(kept, teeth)
+    kept, extra = _without_extra(times, name)
+    spans = _spans(kept)
     _refuse_stops(kept, spans, teeth, missing, name)
     number = np.concatenate([[0], np.cumsum(spans)])
     if missing:
@@ -47,18 +49,23 @@ def numbered(times: Array, teeth: int, missing: int, name: str) -> Teeth:
     return Teeth(kept, number, extra)
 
 
-def _usual(intervals: Array, teeth: int) -> Array:
-    """The median of each interval and its neighbours within a few teeth."""
-    from scipy.ndimage import median_filter
+def _usual(intervals: Array, rank: int) -> Array:
+    """How long a tooth takes at each interval: the middle one of its two neighbours and one of the seven about it.
 
-    half = int(np.clip(teeth // 15, 3, 6))
-    return np.asarray(median_filter(intervals, size=min(2 * half + 1, intervals.size), mode="nearest"))
+    Neighbours follow a speed that swings within few teeth; where one of them is long or short itself, the seven hold:
+    their fourth, or their fifth (``rank`` from zero) while pulses by fault make some of them short.
+    """
+    from scipy.ndimage import rank_filter
+
+    around, near = np.pad(intervals, 1, mode="reflect"), min(NEAR, intervals.size)
+    usual = rank_filter(intervals, min(rank, near - 1), size=near, mode="mirror")
+    return np.asarray(np.median([around[:-2], around[2:], usual], axis=0))
 
 
-def _spans(times: Array, teeth: int) -> Numbers:
+def _spans(times: Array) -> Numbers:
     """Over how many teeth each interval goes."""
     intervals = np.diff(times)
-    return np.maximum(np.rint(intervals / _usual(intervals, teeth)), 1).astype(np.int64)
+    return np.maximum(np.rint(intervals / _usual(intervals, NEAR // 2)), 1).astype(np.int64)
 
 
 def _misfit(spans: Array) -> Array:
@@ -66,12 +73,12 @@ def _misfit(spans: Array) -> Array:
     return np.abs(spans - np.maximum(np.rint(spans), 1.0))
 
 
-def _without_extra(times: Array, teeth: int, name: str) -> tuple[Array, Array]:
+def _without_extra(times: Array, name: str) -> tuple[Array, Array]:
     """The pulses that fit a wheel, and those that do not, taken out one neighbourhood at a time."""
     kept, extra = times, [np.empty(0)]
     for _ in range(PASSES):
         intervals = np.diff(kept)
-        spans = intervals / _usual(intervals, teeth)
+        spans = intervals / _usual(intervals, NEAR // 2 + 1)
         gain = _misfit(spans[:-1]) + _misfit(spans[1:]) - _misfit(spans[:-1] + spans[1:])
         padded = np.concatenate([[-1.0], gain, [-1.0]])
         worst = (gain > MISFIT) & (gain >= padded[:-2]) & (gain > padded[2:])
