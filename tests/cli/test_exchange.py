@@ -28,7 +28,7 @@ def test_fmu_says_what_is_in_the_unit(torsional: Run, truck: str) -> None:
 
 
 def test_fmu_of_a_line_as_json(torsional: Run, truck: str) -> None:
-    asked = ("--sources", "--fmi", "3.0", "--gear", "11", "-i", "vehicle", "-t", "1200Nm")
+    asked = ("--sources", "--fmi", "3", "--gear", "11", "-i", "vehicle", "-t", "1200Nm")
     asked += ("-s", "1000rpm", "--step", "0.05ms")
     told = torsional("fmu", truck, *asked, "--json", "-o", "line.fmu")
     assert told.code == 0, told.err

@@ -62,6 +62,8 @@ def test_the_coupling_is_of_second_order(spring: Path) -> None:
 
 
 @needs_compiler
+@pytest.mark.full
+@pytest.mark.usefixtures("as_shipped")
 def test_a_unit_with_bodies_and_friction_within(tmp_path: Path) -> None:
     model = shipped("truck_dmf_straight_spring")
     absorber = model.absorber

@@ -9,6 +9,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from tests.exchange.compiled import COMPILER, needs_compiler
@@ -17,6 +18,7 @@ from tests.shipped import shipped
 import torsional as tv
 from torsional.errors import ModelError
 from torsional.exchange.fmu.packing import Packed
+from torsional.laws import Law, plain
 
 fmpy = pytest.importorskip("fmpy")
 SPEED, TORQUE = 900 * tv.RPM, 1200.0
@@ -56,6 +58,7 @@ def assert_like(found: Any, own: Any, node: str, element: str, within: float) ->
 
 
 @needs_compiler
+@pytest.mark.usefixtures("as_shipped")
 @pytest.mark.parametrize("version", BOTH)
 def test_a_truck_runs_as_its_own_run_does(tmp_path: Path, version: str) -> None:
     path = tmp_path / "truck.fmu"
@@ -90,6 +93,44 @@ def test_torques_from_outside_act_as_histories_do(tmp_path: Path) -> None:
     ]
     own = tv.transient(system, time=0.06, **{**asked, "drives": [asked["drives"], *more]})
     assert_like(found, own, "gearbox_input", "dmf", 1e-9)
+
+
+@needs_compiler
+@pytest.mark.full
+def test_pistons_pendulums_and_governors_are_in_it(tmp_path: Path) -> None:
+    model = shipped("truck_dmf_pendulum")
+    governor = tv.Governor("throw1", 100.0, acts_on="throw1", proportional=20.0, low=-100.0, high=300.0)
+    asked: dict[str, Any] = {"speed": 100.0, "hold": model.landmarks.load}
+    drives = [tv.CylinderTorques.of(model, 100.0, 800.0), governor]
+    told = tv.export_fmu(model, tmp_path / "truck.fmu", drives=drives, inputs=(), **asked)
+    own = tv.transient(tv.assemble(model.detailed().powertrain()), drives, 0.05, **asked)
+    assert_like(simulated(tmp_path / "truck.fmu", 0.05), own, "gearbox_input", "dmf", 1e-9)
+    assert "pendulum.inertia" not in told.parameters  # its mass stands in the terms of its path too
+
+
+@numba.njit(cache=False, error_model="numpy")
+def cubic_torque(parameters: Any, angle: float, rate: float, memory: float, step: float) -> Any:
+    """k φ + k3 φ³."""
+    slope = parameters[0] + 3.0 * parameters[1] * angle**2
+    return plain(parameters[0] * angle + parameters[1] * angle**3, slope, 0.0)
+
+
+class Cubic(Law):
+    """A law of a user's own."""
+
+    kernel = cubic_torque
+    parameters = np.array([2e3, 4e5])  # type: ignore[assignment]
+
+
+@needs_compiler
+def test_a_law_of_ones_own_goes_the_same_way(tmp_path: Path) -> None:
+    parts = {"a": tv.Inertia(1.0), "b": tv.Inertia(2.0), "s": tv.Coupling("a", "b", Cubic(), 2.0)}
+    line = tv.Powertrain(parts)
+    tv.export_fmu(line, tmp_path / "line.fmu", inputs={"a": 300.0}, start="rest")
+    load = tv.TorqueHistory("a", (0.0,), (300.0,))
+    own = tv.transient(tv.assemble(line), load, 0.2, "rest", speed=0.0)
+    assert np.abs(own.twist).max() > 0.07  # where the cube has as much to say as the line
+    assert_like(simulated(tmp_path / "line.fmu", 0.2), own, "b", "s", 1e-9)
 
 
 @needs_compiler
@@ -133,7 +174,7 @@ def instance(path: Path, folder: Path, version: str) -> Any:
 
 
 @needs_compiler
-@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("version", BOTH)
 def test_states_are_kept_handed_on_and_taken_up(tmp_path: Path, version: str) -> None:
     path = tmp_path / "line.fmu"
     parts = {"a": tv.Inertia(1.0), "b": tv.Inertia(2.0), "s": tv.Shaft("a", "b", 1e4, 5.0)}

@@ -82,7 +82,7 @@ def _tell(request: Request, path: Path, found: Packed, fmi: str) -> None:
         rows += [("size", f"{found.size / 1000:.0f} kB"), ("step of time", f"{found.step:g} s at most")]
         rows += [("compiled for", found.compiled or "nothing; the sources are in it")]
         rows += [
-            (name, ", ".join(names[:3]) + (f" … {len(names)} in all" if len(names) > 3 else ""))
+            (name, ", ".join(names[:3] or ["none"]) + (f" … {len(names)} in all" if len(names) > 3 else ""))
             for name, names in counts.items()
         ]
         print_tables([Table("Functional mock-up unit", [Column("what"), Column("value")], rows)])

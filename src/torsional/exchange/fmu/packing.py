@@ -43,6 +43,7 @@ def packed(unit: Unit, path: str | os.PathLike[str], version: str = "2.0", compi
     ``version`` of FMI; ``compiled``: with a binary for this machine; None: where a compiler is at hand.
     Raises ModelError for another version, and where a binary is wanted and there is no compiler.
     """
+    version = {short[0]: short for short in VERSIONS}.get(version, version)
     if version not in VERSIONS:
         raise ModelError("this version of FMI is not written", where="fmi", found=version, allowed=", ".join(VERSIONS))
     sources = sources_of(unit, version)

@@ -112,13 +112,14 @@ def unique(unit: Unit) -> Unit:
 def parameters_of(plan: Plan, system: System, heavy: Sequence[str] = ()) -> list[Parameter]:
     """Inertias, stiffnesses of plain springs and damping coefficients, but for the masses named ``heavy``."""
     masses, c = system.masses, system.connections
+    hung = {name.rpartition(".")[0] for name, swing in zip(c.names, c.swings, strict=False) if swing is not None}
     found: list[Parameter] = [
         (
             Variable(f"{name}.inertia", "kg.m2", f"moment of inertia of {name}", float(inertia)),
             inertia_slopes(plan, row),
         )
         for name, inertia, row in zip(masses.names, masses.inertia, masses.weights, strict=True)
-        if name not in heavy
+        if name not in {*heavy, *hung}  # a pendulum's mass stands in the terms of its path too
     ]
     count = len(c.names)
     for e, name in enumerate(c.names):

@@ -142,8 +142,9 @@ static bool machine_mobility(Machine *m)
 {
     enum { N = COORDINATES };
     static const double heavy = 1e30;
-    double a[N][2 * N];
-    memset(a, 0, sizeof a);
+    double (*a)[2 * N] = calloc(N, sizeof *a); /* too large for the stack of a thread where bodies are many */
+    bool regular = a != NULL;
+    if (!regular) return false;
     for (int i = 0; i < N; i++) a[i][i] = m->plan.masses.diagonal.p[i], a[i][N + i] = 1.0;
     for (int64_t k = 0; k < m->plan.masses.above.n[0]; k++) {
         const i2 at = m->plan.masses.above_at;
@@ -154,11 +155,11 @@ static bool machine_mobility(Machine *m)
 #else
     (void)heavy;
 #endif
-    for (int c = 0; c < N; c++) {
+    for (int c = 0; c < N && regular; c++) {
         int best = c;
         for (int r = c + 1; r < N; r++)
             if (fabs(a[r][c]) > fabs(a[best][c])) best = r;
-        if (!(fabs(a[best][c]) > 0.0)) return false;
+        regular = fabs(a[best][c]) > 0.0;
         for (int k = 0; k < 2 * N; k++) {
             double held = a[c][k];
             a[c][k] = a[best][k];
@@ -174,7 +175,8 @@ static bool machine_mobility(Machine *m)
     }
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++) m->mobility.p[i * N + j] = a[i][N + j];
-    return true;
+    free(a);
+    return regular;
 }
 #endif
 
