@@ -110,6 +110,16 @@ def test_a_tacho_on_the_camshaft() -> None:
         assert phase < 1.0
 
 
+def test_the_gap_makes_no_orders() -> None:
+    """Of a pure order 12 a cubic spline across the gap of a 60−2 wheel makes 1 % at others."""
+    run = RunUp(600 * RPM, 100 * RPM, 5.0, {12.0: 2e-3 + 0j})
+    shaft = steady_wheel(run, missing=2)
+    found = tv.track_orders(None, tv.mean_rotation(shaft), np.arange(0.5, 14.1, 0.5), shafts={"c": shaft})
+    sizes = abs(found.angle.sel(node="c")).max("speed") / 2e-3
+    assert float(sizes.sel(order=12.0)) == pytest.approx(1.0, abs=1e-3)
+    assert float(sizes.drop_sel(order=12.0).max()) < 1e-3
+
+
 def test_marks_of_cylinder_1_put_the_zero_and_tell_the_turns_apart() -> None:
     run = RunUp(600 * RPM, 50 * RPM, 10.0, {1.5: 2e-3 * np.exp(0.4j), 3.0: 5e-3 + 0j})
     shaft = tv.shaft_from_pulses(run.pulses(60), 60, index_angle=1.234)

@@ -12,6 +12,7 @@ from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.measurements.filling import filled
 from torsional.measurements.pulses import clock_tick
+from torsional.measurements.rotation import deviation, mean_rotation
 from torsional.measurements.signals import refuse_times
 from torsional.measurements.teeth import numbered
 from torsional.numerics.arrays import Array
@@ -88,8 +89,6 @@ def tooth_pitch(shaft: xr.Dataset, begin: float, end: float) -> Array:
     >>> bool(abs(found - (off - off.mean())).max() < 2e-6)
     True
     """
-    from torsional.measurements.rotation import deviation, mean_rotation
-
     if shaft.attrs.get("source") != "pulses":
         raise ModelError("a pitch is learnt from pulses", where="shaft", found=str(shaft.attrs.get("source", "none")))
     teeth = int(shaft.attrs["teeth"])

@@ -6,11 +6,9 @@ import numpy as np
 import xarray as xr
 
 from torsional.errors import ModelError
+from torsional.measurements.recording import sampling
 from torsional.numerics.arrays import Array
 from torsional.units import QUANTITIES, quoted, unit_factor
-
-EVEN = 1e-6
-"""By what steps of an even raster may differ, over the step itself."""
 
 
 def named(signal: xr.DataArray) -> str:
@@ -46,8 +44,7 @@ def refuse_times(time: Array, name: str) -> None:
 
 def is_even(time: Array) -> bool:
     """Whether times are on an even raster."""
-    steps = np.diff(time)
-    return bool(steps.size and np.ptp(steps) <= max(EVEN * float(steps.mean()), 1e-12 * float(np.abs(time).max())))
+    return sampling(time)["sampling"] == "even"
 
 
 def factor(signal: xr.DataArray, quantity: str, unit: str | None) -> float:
