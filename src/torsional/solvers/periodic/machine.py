@@ -110,9 +110,18 @@ def varied_response(
 
 def _explored(model: Model, gear: str | int | None, load: Load, span: Range, asked: Exploration) -> xr.Dataset:
     """Branches of a model in a gear, its load taking up the mean torque, in the orders that the cylinders have."""
-    asked = replace(asked, hold=model.landmarks.load, base_order=asked.base_order or load.base_order)
-    data = answered(assemble(model.powertrain(gear)), load, span, asked)
+    data = system_response(model, assemble(model.powertrain(gear)), load, span, asked)
     return of_model(data, model, model.gear_name(gear))
+
+
+def system_response(model: Model, system: System, load: Load, span: Range, asked: Exploration) -> xr.Dataset:
+    """The same of a ``system`` that stands for a line of the model."""
+    return answered(
+        system,
+        load,
+        span,
+        replace(asked, hold=model.landmarks.load, base_order=asked.base_order or load.base_order),
+    )
 
 
 def common_order(model: Model, speed: float, torque: float) -> float:

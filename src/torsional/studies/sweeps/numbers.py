@@ -9,12 +9,13 @@ then there is no `Fit`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from torsional.laws import Hinges, Law
 from torsional.numerics.arrays import Array, IntArray
 from torsional.solvers.variants import NUMBERS
 from torsional.studies.sweeps.designs import Axis, Values
@@ -171,3 +172,23 @@ def parts_of(system: System, numbers: Array) -> tuple[dict[str, Array], dict[int
             laws[place] = numbers[:, at : at + law.parameters.size]
             at += law.parameters.size
     return tables, laws
+
+
+def system_of(system: System, tables: Mapping[str, Array], laws: Mapping[int, Array], design: int) -> System:
+    """One design: the ``system`` that stands for all with numbers of its own, from `parts_of`."""
+    c = system.connections
+    own = tuple(
+        law if law is None or np.array_equal(law.parameters, laws[place][design]) else _bent(law, laws[place][design])
+        for place, law in enumerate(c.laws)
+    )
+    told = {name: np.array(tables[name][design]) for name in NUMBERS}
+    masses = replace(system.masses, inertia=np.array(tables["inertia"][design]))
+    return replace(system.with_connections(**told, laws=own), masses=masses)
+
+
+def _bent(law: Law, row: Array) -> Law:
+    """A law of hinges like another one, with parameters of its own; its stops go with their hinges."""
+    assert isinstance(law, Hinges)  # no other law is fitted
+    gaps, sides, changes = (tuple(row[first::3].tolist()) for first in (1, 2, 3))
+    stops = [gap for gap, known in zip(gaps, law.gaps, strict=True) if known in law.stops]
+    return Hinges(float(row[0]), gaps, sides, changes, tuple(sorted(stops)))

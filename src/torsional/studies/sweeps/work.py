@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
@@ -51,6 +52,20 @@ class Together(Protocol):
         """The answers of designs that are covered, ``design`` in front: as those of each alone, but for rounding."""
 
 
+@runtime_checkable
+class ByNumbers(Protocol):
+    """An analysis that asks designs one at a time, but needs the numbers of their systems alone."""
+
+    def possible(self, batch: Batch) -> bool:
+        """Whether it can ask these designs so."""
+
+    def covers(self, batch: Batch, columns: Mapping[str, Any]) -> BoolArray:
+        """Which of some designs (designs,); the others are built."""
+
+    def each(self, batch: Batch, columns: Mapping[str, Any]) -> Callable[[int], Answer]:
+        """The answer of any of the designs of ``columns`` that are covered: as those of each built but for rounding."""
+
+
 @dataclass(frozen=True)
 class Work:
     """What is asked of the ``designs``: each is built and run.
@@ -74,8 +89,9 @@ class Work:
         piece = _Piece(start, stop - start)
         with WATCH.silent():
             left = self._together(piece, aside)
+            known = self._by_numbers(start, stop)
             for place, values in zip(left, self._rows(start, stop, left), strict=True):
-                status, reason, answer = self._tried(start + place, values, aside)
+                status, reason, answer = self._tried(start + place, values, aside, known.get(place))
                 piece.tell(place, status, reason)
                 if answer is not None:
                     piece.take(np.array([place]), answer.expand_dims("design"))
@@ -87,13 +103,28 @@ class Work:
 
     @cached_property
     def _batch(self) -> Batch | None:
-        """Designs asked together, where the analysis can and there are enough of them."""
+        """Designs asked together or by their numbers, where the analysis can and there are enough of them."""
         if self.batch is not None:
             return self.batch
-        if not (isinstance(self.build, Model) and isinstance(self.run, Together) and len(self.designs) >= MANY):
+        able = isinstance(self.run, Together | ByNumbers)
+        if not (isinstance(self.build, Model) and able and len(self.designs) >= MANY):
             return None
         batch = Batch.of(self.build, self.designs)
-        return batch if batch is not None and self.run.possible(batch) else None
+        return batch if batch is not None and self.run.possible(batch) else None  # type: ignore[attr-defined]
+
+    def _by_numbers(self, start: int, stop: int) -> dict[int, Callable[[], Answer]]:
+        """How to ask those designs of a stretch, by place, that need not be built."""
+        if self._batch is None or not isinstance(self.run, ByNumbers):
+            return {}
+        columns = self.designs.columns(start, stop)
+        fine = np.flatnonzero(self.run.covers(self._batch, columns))
+        if not fine.size:
+            return {}
+        try:
+            each = self.run.each(self._batch, _chosen(columns, fine))
+        except ModelError:  # refused for every design, each with its reason
+            return {}
+        return {place: partial(each, design) for design, place in enumerate(fine.tolist())}
 
     def _together(self, piece: _Piece, aside: Collection[int]) -> list[int]:
         """Answer the designs that can be asked together; the places of those that are left."""
@@ -112,11 +143,17 @@ class Work:
             piece.take(places, answers)
         return every[~fine].tolist()
 
-    def _tried(self, number: int, values: Values, aside: Collection[int]) -> tuple[int, str, xr.Dataset | None]:
+    def _tried(
+        self, number: int, values: Values, aside: Collection[int], known: Callable[[], Answer] | None = None
+    ) -> tuple[int, str, xr.Dataset | None]:
+        """A design with its status and reason; one that is refused as it is ``known`` is built to be told why."""
         if number in aside:
             return CRASHED, f"ended {CRASHES} processes", None
         marked(number)
         try:
+            if known is not None:
+                with suppress(ModelError):
+                    return OK, "", _figures(known())
             model = changed(self.build, dict(values)) if isinstance(self.build, Model) else self.build(**values)
             return OK, "", _figures(self.run(model))
         except ModelError as error:
