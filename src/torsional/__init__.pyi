@@ -167,6 +167,9 @@ from .stamps import (
     SpeedSwitch as SpeedSwitch,
 )
 from .studies.scenarios.run_up import run_up as run_up
+from .studies.correlation import correlation as correlation
+from .studies.identification.plan import load_identification as load_identification
+from .studies.identification.result import identify as identify
 from .studies.scenarios.running import run_scenario as run_scenario
 from .system import System as System, assemble as assemble
 from .units import RPM as RPM

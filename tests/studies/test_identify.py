@@ -65,7 +65,9 @@ def test_slopes_are_derivatives() -> None:
 def test_a_parameter_that_data_do_not_tell() -> None:
     asked = [*DECAY, Unknown("idle", "torque", 1.0, 0.0, 2.0)]
     found = appraised(decay, noisy(1), asked)
-    assert np.isinf(found.deviations).all() and np.isnan(found.correlation).all()
+    assert np.isinf(found.deviations).tolist() == [False, False, True] and np.isnan(found.correlation[2]).all()
+    without = appraised(decay, noisy(1), DECAY)
+    assert found.deviations[:2] == pytest.approx(without.deviations, rel=1e-3)  # one degree of freedom less
 
 
 def test_weights_choose_between_points_that_contradict() -> None:

@@ -26,6 +26,7 @@ from torsional.studies.claims.identification import (
 )
 from torsional.studies.claims.rig_friction import VISCOUS, dry
 from torsional.studies.estimates import Unknown
+from torsional.studies.loop_torques import torques_in
 from torsional.studies.records import Record, loops_of_file, loops_of_table, write_loops
 from torsional.studies.rig import (
     Point,
@@ -34,7 +35,6 @@ from torsional.studies.rig import (
     measured_on_rig,
     met,
     on_rig,
-    torques_in,
     torques_of,
     viscous_share,
     with_values,

@@ -47,6 +47,15 @@ class Swing(NamedTuple):
     terms: Array
     noise: float
 
+    def spread(self, time: Array) -> Array:
+        """Independent errors (errors, terms) of the terms [rad], a standard deviation each, of samples at times [s].
+
+        σ² (XᵀX)⁻¹ = L Lᵀ, the errors the columns of L.  That of the period is left out: it shifts the first cycles
+        against the last ones, and over all of them next to nothing.
+        """
+        waves = _waves(time, self.period, (self.terms.size - 1) // 2)
+        return np.asarray(self.noise * np.linalg.cholesky(np.linalg.inv(waves.T @ waves)).T)
+
     def at(self, time: Array) -> Array:
         """The angle [rad] at times [s]."""
         orders = (self.terms.size - 1) // 2
@@ -99,20 +108,20 @@ class Record:
 
     @cached_property
     def noise(self) -> float:
-        """Standard deviation [Nm] of the torque's noise: how far samples lie off the line between their neighbours.
+        """Standard deviation [Nm] of the torque's noise, as `white_noise` tells it."""
+        return white_noise(self.time, self.torque)
 
-        The median of it, so that corners and jumps of friction count for nothing; noise is taken as white.
-        """
-        t, values = self.time, self.torque
-        share = (t[1:-1] - t[:-2]) / (t[2:] - t[:-2])
-        off = values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:]
-        each = np.abs(off) / np.sqrt(1.0 + share**2 + (1.0 - share) ** 2)
-        return float(np.median(each) / MEDIAN)
+    @cached_property
+    def swing_errors(self) -> Array:
+        """Independent errors (errors, terms) [rad] of the `swing` by the encoder's noise, a standard deviation each."""
+        return self.swing.spread(self.time)
 
-    def course(self, samples: int, offset: float = 0.0) -> Course:
-        """One cycle of the motion, in so many steps; ``offset`` [rad]: what the encoder tells too much."""
+    def course(self, samples: int, offset: float = 0.0, error: Array | None = None) -> Course:
+        """One cycle of the motion, in so many steps; ``offset`` [rad]: what the encoder tells too much, ``error``: what
+        the terms of the swing are off by."""
         at = self.swing.begin + self.swing.period * np.arange(1, samples + 1) / samples
-        return Course.through(self.speed, self.swing.at(at) - offset, self.swing.period)
+        swing = self.swing if error is None else self.swing._replace(terms=self.swing.terms + error)
+        return Course.through(self.speed, swing.at(at) - offset, self.swing.period)
 
     def of_cycle(self, values: Array) -> Array:
         """What values (samples,) over the steps of `course` are at the instants of the record."""
@@ -127,6 +136,21 @@ class Record:
         count = np.bincount(part, minlength=bins)
         total = np.bincount(part, weights=values, minlength=bins)
         return np.asarray(np.divide(total, count, out=np.full(bins, np.nan), where=count > 0))
+
+
+def white_noise(time: Array, values: Array) -> float:
+    """Standard deviation of white noise in values (samples,): how far they lie off the line between their neighbours.
+
+    The median of it, so that corners and jumps of friction count for nothing.
+
+    >>> draw = np.random.default_rng(0)
+    >>> round(white_noise(np.arange(4000.0), 0.2 * draw.standard_normal(4000)), 2)
+    0.2
+    """
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    off = values[1:-1] - (1.0 - share) * values[:-2] - share * values[2:]
+    each = np.abs(off) / np.sqrt(1.0 + share**2 + (1.0 - share) ** 2)
+    return float(np.median(each) / MEDIAN)
 
 
 def _waves(time: Array, period: float, orders: int) -> Array:

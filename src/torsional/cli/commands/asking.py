@@ -6,6 +6,7 @@ from pathlib import Path
 
 import typer
 
+from torsional.cli import identification_options as i
 from torsional.cli import options as o
 from torsional.cli.app import app
 from torsional.cli.jobs import Job, job
@@ -137,6 +138,45 @@ def optimise(
         output=output,
         quiet=quiet,
     )
+
+
+@app.command()
+def identify(
+    plan: i.Identification,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Parameters of a model found from measurements.
+
+    Loops of a rig, order curves or signals in time, as a plan names them: least squares within bounds, with intervals,
+    what the data cannot tell, other models of the same data, and points that are held back.  -o takes a page, .html,
+    too.
+    """
+    return job("identify", **locals())
+
+
+@app.command()
+def correlate(
+    measured: i.MeasuredOrders,
+    computed: i.ComputedOrders,
+    node: o.Nodes = None,
+    element: o.Elements = None,
+    gear: o.Gear = "",
+    torque: o.Torque = "",
+    amplitude: i.AmplitudeKind = "0-peak",
+    changes: o.Changes = None,
+    as_json: o.Json = False,
+    output: o.Output = None,
+    quiet: o.Quiet = False,
+) -> Job:
+    """Measured orders beside computed ones.
+
+    Order by order at one node or connection: errors of amplitude, peak and phase, the frequency response assurance
+    criterion, RMS and R².  Computed is a result (.nc) or a model file, which is asked at the measured speeds.  -o takes
+    a page, .html, too.
+    """
+    return job("correlate", **locals())
 
 
 app.add_typer(

@@ -1,8 +1,7 @@
 """The claim that a detailed model reproduces a rig's measurement (F1), and the virtual rig that stands for one.
 
 No measurement of a rig is public.  So a flywheel whose parameters are known is measured with noise, by sensors whose
-zeros are off, in shorter steps than the model that is fitted.  `loops_of_file` and `found_on_rig` take real loops in
-the same way.
+zeros are off.  `loops_of_file` and `found_on_rig` take real loops in the same way.
 """
 
 from __future__ import annotations
@@ -22,17 +21,15 @@ from torsional.studies.answers import floats
 from torsional.studies.base import Figure, Finding, claim
 from torsional.studies.estimates import Identified, Unknown
 from torsional.studies.identify import appraised, identified
+from torsional.studies.loop_torques import ANGLE_OFFSET, TORQUE_OFFSET, torques_in
 from torsional.studies.records import Record
 from torsional.studies.rig import (
-    ANGLE_OFFSET,
     ROUGH,
     ROUGH_STEPS,
-    TORQUE_OFFSET,
     Point,
     Sensors,
     found_on_rig,
     measured_on_rig,
-    torques_in,
     torques_of,
     with_values,
 )
@@ -154,7 +151,7 @@ def told(found: Identified, wider: Identified) -> dict[str, Figure]:
     deviation = dict(zip(found.values, found.deviations.tolist(), strict=True))
     figures: dict[str, Figure] = {}
     for name, miss in zip(TRUTH, misses(found).tolist(), strict=True):
-        figures[f"{name}: miss, and standard deviation of noise in the torque [%]"] = (
+        figures[f"{name}: miss, and standard deviation of noise in torque and angle [%]"] = (
             100.0 * miss,
             100.0 * deviation[name] / TRUTH[name],
         )

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -166,21 +167,21 @@ def _ends(given: Parameter, where: str, model: Model) -> tuple[float, float]:
         if given.tolerance >= 1:
             found, allowed = f"{given.tolerance:g}", "a share below 1, as 0.1 or 10 %"
             raise ModelError("the tolerance is too large", where=f"{where}.tolerance", found=found, allowed=allowed)
-        own = _own(path, model, where)
+        own = own_value(path, model, where)
         told = [*sorted((own * (1.0 - given.tolerance), own * (1.0 + given.tolerance)))]
     if None in told:
         allowed = "values: [...], low and high, or tolerance"
         raise ModelError("a parameter needs values or ends", where=where, found=quoted(path), allowed=allowed)
     places = [f"{where}.{end}" if given.tolerance is None else f"{where}.tolerance" for end in ("low", "high")]
-    low, high = (_number(path, value, model, place) for value, place in zip(told, places, strict=True))
+    low, high = (number_at(path, value, model, place) for value, place in zip(told, places, strict=True))
     return low, high
 
 
-def _own(path: str, model: Model, where: str) -> float:
+def own_value(path: str, model: Model, where: str) -> float:
     """The model's own value in SI; a ModelError where it has none, several, or 0."""
     found = values_at(read_document(copy.deepcopy(dict(model.document))), path)
     if not found:  # misspelt, perhaps
-        _number(path, 1.0, model, f"{where}.parameter")
+        number_at(path, 1.0, model, f"{where}.parameter")
     own = next(iter(found.values()), 0.0)
     if len(found) != 1 or own == 0:
         problem = "a tolerance is about one value that the model file gives, other than 0"
@@ -222,14 +223,17 @@ def _in_si(path: str, value: Any, model: Model) -> Any:
     return next(iter(found.values())) if len(found) == 1 else value
 
 
-def _number(path: str, value: Any, model: Model, where: str) -> float:
-    """An end of a range in SI, tried on the model."""
+def number_at(
+    path: str, value: Any, model: Model, where: str, kept: Mapping[str, float] = MappingProxyType({})
+) -> float:
+    """An end of a range in SI, tried on the model; values ``kept`` in a ratio to it, by key path, go with it."""
+    number = _in_si(path, value, model)
+    plain = isinstance(number, int | float) and not isinstance(number, bool)
     try:
-        changed(model, {path: value})
+        changed(model, {path: value, **({other: ratio * number for other, ratio in kept.items()} if plain else {})})
     except ModelError as error:
         raise _refused(error, where) from None
-    number = _in_si(path, value, model)
-    if isinstance(number, bool) or not isinstance(number, int | float):
+    if not plain:
         raise ModelError("the ends of a range are numbers", where=where, found=quoted(value))
     return float(number)
 
@@ -243,7 +247,7 @@ def _columns(path: Path, model: Model) -> dict[str, list[float]]:
     except ModelError as error:
         raise error.located(file=error.file or path.name) from None
     return {
-        name: (column * (_number(name, f"1 {unit}", model, name) if unit else 1.0)).tolist()
+        name: (column * (number_at(name, f"1 {unit}", model, name) if unit else 1.0)).tolist()
         for (name, unit), column in zip(heads, values, strict=True)
     }
 

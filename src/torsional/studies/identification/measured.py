@@ -1,0 +1,129 @@
+"""Blocks of a plan that name what was measured, and what each of them reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
+
+import numpy as np
+from pydantic import Field
+
+from torsional.errors import ModelError, nearest
+from torsional.files.opening import TABLE_BYTES, read_text
+from torsional.files.scenario import load_scenario
+from torsional.files.scenario_blocks import GearName
+from torsional.files.scenario_schema import KINDS
+from torsional.files.schema.fields import Block, Node, Quantity
+from torsional.model import Model
+from torsional.studies.identification.sources import History, Loops, Orders, ends_of
+from torsional.studies.order_curves import CARRIED, NODAL, Amplitude, curves_of_result, curves_of_table
+from torsional.studies.records import loops_of_file, white_noise
+from torsional.tables import cells, named, parse_table
+from torsional.units import quoted
+
+Share = Annotated[float, Quantity("ratio", above=0)]
+Weights = dict[str, Share]
+LEAST = 4
+
+
+class Seen(Block):
+    """What all have in common."""
+
+    file: str = Field(description="table beside the plan")
+    weights: Weights = Field(default_factory=dict, description="of points among others, by their names; default: 1")
+    zeros: bool = False
+
+
+class LoopsBlock(Seen):
+    """Loops of a rig: columns loop, time, speed, angle and torque."""
+
+    kind: Literal["loops"]
+    gear: GearName = ""
+    turned: Node = Field("", description="default: the flywheel on the crankshaft")
+    held: Node = Field("", description="default: the flywheel that carries the clutch")
+    zeros: bool = Field(True, description="whether the sensors' zeros are looked for too")
+
+    def source(self, model: Model, folder: Path) -> Loops:
+        """The loops, with the nodes between which they were measured."""
+        ends = ends_of(model, self.turned, self.held)
+        return Loops(loops_of_file(folder / self.file), ends, model.gear_name(self.gear or None), self.weights)
+
+
+class OrdersBlock(Seen):
+    """Order curves: columns speed, order, one that names the quantity, and phase; or a result in netCDF."""
+
+    kind: Literal["orders"]
+    name: str = Field("", description="default: the file's name")
+    place: Node = Field(description="node or connection")
+    quantity: Literal["", *CARRIED] = Field("", description="of a result in netCDF")  # type: ignore[valid-type]
+    amplitude: Amplitude = Field("0-peak", description="what a table tells")
+    gear: GearName = Field("", description="engaged; default: the last listed")
+    torque: Annotated[float, Quantity("torque")] | None = Field(None, description="mean; default: full load")
+    noise: Share = Field(0.02, description="over the RMS of the curve")
+
+    def source(self, model: Model, folder: Path) -> Orders:
+        """Its curves, speeds where all orders were measured."""
+        path, name = folder / self.file, self.name or Path(self.file).stem
+        if path.suffix.lower() in (".nc", ".nc4"):
+            found = curves_of_result(path, self.place, self.quantity)
+        else:
+            found = curves_of_table(path, self.amplitude)
+        whole = found.dropna("speed")
+        if whole.speed.size < LEAST:
+            found_ = f"{whole.speed.size} speeds at which all orders were measured"
+            raise ModelError("too little was measured", where="file", found=found_, allowed=f"{LEAST} at least")
+        _refuse_place(model, self.place, str(found.name), self.gear)
+        curves = {float(n): whole.sel(order=n).values for n in whole.order.values if n > 0}
+        gear = model.gear_name(self.gear or None)
+        return Orders(
+            name,
+            curves,
+            whole.speed.values,
+            self.place,
+            str(found.name),
+            gear,
+            self.torque,
+            self.noise,
+            self.weights,
+        )
+
+
+class HistoryBlock(Seen):
+    """A signal in time: columns time and one that names the quantity."""
+
+    kind: Literal["history"]
+    name: str = Field("", description="default: the file's name")
+    place: Node = Field(description="node or connection")
+    scenario: str = Field(description="name of a kind, or of a file beside the plan")
+    noise: float | None = Field(None, gt=0, description="standard deviation in SI; default: that of white noise in it")
+
+    def source(self, model: Model, folder: Path) -> History:
+        """The signal, with the scenario it was measured in."""
+        text = read_text(folder / self.file, TABLE_BYTES)
+        heads = [named(cell)[0] for cell in cells(text).header]
+        quantity = next((head for head in heads if head in CARRIED), "")
+        if not quantity:
+            raise ModelError("one column must name the quantity", where="file", allowed=", ".join(CARRIED))
+        table = parse_table(text, {"time": "time", quantity: quantity}, increasing="time")
+        times, values = np.array(table["time"]), np.array(table[quantity])
+        source = self.scenario if self.scenario in KINDS else str(folder / self.scenario)
+        noise = self.noise or white_noise(times, values)
+        if not noise > 0:
+            raise ModelError("the signal tells no noise of its own", where="noise", remedy="give noise")
+        name = self.name or Path(self.file).stem
+        weight = self.weights.get(name, 1.0)
+        return History(name, times, values, self.place, quantity, load_scenario(source), noise, weight)
+
+
+def _refuse_place(model: Model, place: str, quantity: str, gear: str) -> None:
+    """A node for quantities of nodes, a connection for the others."""
+    line = model.powertrain(gear or None)
+    known = [*line.nodes] if quantity in NODAL else list(line.components)
+    if place not in known:
+        what = "node" if quantity in NODAL else "connection"
+        raise ModelError(
+            f"the model has no such {what}", where="place", found=quoted(place), remedy=nearest(place, known)
+        )
+
+
+AnyMeasured: TypeAlias = Annotated[LoopsBlock | OrdersBlock | HistoryBlock, Field(discriminator="kind")]
