@@ -98,6 +98,13 @@ def test_the_only_channel_that_can_be_a_tacho_is_taken(torsional: Run, record: s
     assert {"M_gbx", "tacho", "angle", "noise"} == set(found["result"]["variables"])
 
 
+def test_usual_orders_are_those_that_all_channels_tell(torsional: Run, record: str) -> None:
+    """12 teeth a turn, a tenth farther apart where it vibrates, at 2.56 a period: order 4.3 at the most."""
+    told = torsional("orders", record, "--tacho", "tacho", "--wheel", "12-1", "--json")
+    assert told.code == 0, told.err
+    assert max(json.loads(told.out)["result"]["coordinates"]["order"]["values"]) == 4.0
+
+
 def test_a_further_shaft(torsional: Run, record: str) -> None:
     told = torsional("orders", record, "--tacho", "n_mot", "--shaft", "tacho=12-1", "-n", "3", "--json")
     assert told.code == 0, told.err

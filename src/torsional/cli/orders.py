@@ -24,6 +24,7 @@ from torsional.engine.orders import HALF_ORDERS
 from torsional.errors import ModelError, nearest
 from torsional.measurements.orders import CONVENTIONS, track_orders
 from torsional.measurements.reading import read_measurement
+from torsional.measurements.resampling import highest_order
 from torsional.measurements.rotation import mean_rotation
 from torsional.measurements.tachos import KINDS, PER_TURN, event_times, kind_of, shaft_from_channel
 from torsional.numerics.arrays import Array
@@ -65,6 +66,8 @@ def run(
     rotation = mean_rotation(engine, ratio=turns, marks=record.marks(marks))
     shafts = {record.tacho: engine, **{name: record.shaft(name, teeth) for name, teeth in map(wheel_of, shaft or ())}}
     signals = record.signals(channel or (), shafts)
+    if not orders:
+        order = told_apart(order, rotation, [*shafts.values(), *(signals[name] for name in signals.data_vars)])
     found = track_orders(signals, rotation, order, shafts=shafts, **settings)  # type: ignore[arg-type]
     run_up = RunUp(file.name, rotation, shafts, signals, found, convention, told_as, settings)  # type: ignore[arg-type]
     told: dict[str, Any] = {"file": str(file), "tacho": record.tacho, "shafts": mended(run_up), "settings": settings}
@@ -148,6 +151,12 @@ def asked_orders(text: str) -> Array:
     found = [read_orders(None, part) for part in ranges] + [read_orders(single, "")]
     every = [each for each in found if each is not None]
     return np.unique(np.concatenate(every)) if every else np.array(HALF_ORDERS)
+
+
+def told_apart(order: Array, rotation: xr.Dataset, records: Sequence[xr.Dataset | xr.DataArray]) -> Array:
+    """Of the usual orders those of which all records have samples enough, the lowest at least."""
+    times = [record[next(dim for dim in record.dims if str(dim).startswith("time"))].values for record in records]
+    return np.asarray(order[order <= max(highest_order(rotation, times), order[0])])
 
 
 def one_of(text: str, known: Sequence[str], option: str) -> str:

@@ -96,19 +96,32 @@ def common_span(rotation: xr.Dataset, times: Sequence[Array], per_turn: int) -> 
     return first, float(high - room)
 
 
-def _step(time: Array) -> float:
-    return float(np.median(np.diff(time)))
+def _angles_between(time: Array, rotation: xr.Dataset) -> tuple[float, float]:
+    """How far [rad] the crank turns between samples where they are closest, and where they are farthest apart.
+
+    Samples even in time are farthest apart at the highest speed, teeth are as far at any.
+    """
+    inside = time[(time >= float(rotation.time[0])) & (time <= float(rotation.time[-1]))]
+    if inside.size < 2:
+        raise ModelError("channel and rotation have no time in common", where="time", found=f"{inside.size} samples")
+    near, far = np.quantile(np.diff(crank_angle_at(rotation, inside)), [0.01, 0.99])
+    return float(near), float(far)
+
+
+def highest_order(rotation: xr.Dataset, times: Sequence[Array]) -> float:
+    """The highest order of which all records have samples enough."""
+    return min(TURN / (BAND * _angles_between(time, rotation)[1]) for time in times)
 
 
 def _per_period(time: Array, rotation: xr.Dataset, order: float, name: str) -> float:
-    """Samples a period of an order at the highest speed; ModelError for too few."""
-    highest, step = float(rotation.speed.max()) * order / TURN, _step(time)
-    found = 1.0 / (step * highest)
-    if found < BAND:
-        told = f"{1 / step:.5g} samples a second, and order {order:g} comes to {highest:.5g} Hz"
-        remedy = f"lower orders, up to {order * found / BAND:.3g}"
-        raise ModelError("the channel is sampled too seldom", where=name, found=told, remedy=remedy)
-    return found
+    """Samples a period of an order where they are fewest; ModelError for too few."""
+    turn = TURN / _angles_between(time, rotation)[1]
+    if turn < BAND * order:
+        told = f"{turn:.4g} samples a turn where they are fewest"
+        remedy = f"lower orders, up to {turn / BAND:.3g}"
+        allowed = f"{BAND * order:.4g} and more for order {order:g}"
+        raise ModelError("the channel is sampled too seldom", where=name, found=told, allowed=allowed, remedy=remedy)
+    return turn / order
 
 
 def _at_rate(time: Array, values: Array, per_period: float, even: bool) -> tuple[Array, Array]:
@@ -127,7 +140,7 @@ def _at_rate(time: Array, values: Array, per_period: float, even: bool) -> tuple
 
 def _fineness(time: Array, rotation: xr.Dataset, per_turn: int, span: float) -> int:
     """How many times finer angles are first to be, so that nothing in the record is folded where it turns slowest."""
-    wanted = TURN / (_step(time) * float(rotation.speed.min()) * per_turn)
+    wanted = TURN / (_angles_between(time, rotation)[0] * per_turn)
     return int(np.clip(np.ceil(wanted), 1, max(MOST // (per_turn * span / TURN), 1)))
 
 
