@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from pathlib import Path
 from typing import Any
@@ -125,11 +126,16 @@ def test_names_that_do_not_fit_are_told(spring: Path, part: dict[str, Any], word
 
 
 @needs_compiler
-def test_a_unit_that_gives_up_says_when(spring: Path) -> None:
+def test_what_goes_wrong_is_told_in_the_units_words(spring: Path, capsys: pytest.CaptureFixture[str]) -> None:
     line = tv.assemble(tv.Powertrain({"a": tv.Inertia(1e-9)}))
     part = tv.FmuPart.on(spring, "a", torque="secondary.torque", angle="primary.angle", speed="primary.speed")
-    with pytest.raises(ModelError, match=r"gives up at|lose the motion"):
-        tv.co_simulation(line, tv.TorqueHistory("a", (0.0,), (1.0,)), 1.0, part, speed=0.0, communication_step=1e-3)
+    load = tv.TorqueHistory("a", (0.0,), (1.0,))
+    with pytest.raises(ModelError, match=r"time 0.0\d+ s: the line and its units lose the motion"):
+        tv.co_simulation(line, load, 1.0, part, speed=0.0, communication_step=1e-3)
+    part = dataclasses.replace(part, parameters={"step": -1.0})
+    with pytest.raises(ModelError, match=r"dmf.fmu: the unit does not take its parameters; found .*a number that it cannot have"):
+        tv.co_simulation(line, load, 1.0, part, speed=0.0, communication_step=1e-3)
+    assert capsys.readouterr().out == ""
 
 
 def test_what_is_not_asked_rightly_is_refused() -> None:

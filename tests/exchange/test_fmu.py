@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import zipfile
@@ -233,6 +234,35 @@ def test_the_sources_in_the_archive_are_complete(tmp_path: Path) -> None:
     order = [COMPILER, "-std=c99", "-Wall", "-Werror", "-Wno-unused", "-shared", "-fPIC", "-o", "u.so", "all.c"]
     told = subprocess.run(order, cwd=tmp_path / "sources", capture_output=True, text=True, check=False)
     assert told.stderr == ""
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_interface_is_the_standards_own(tmp_path: Path, version: str) -> None:
+    headers = Path(fmpy.__file__).parent / "c-code"
+    tv.export_fmu(shipped("truck_dmf").absorber, tmp_path / "u.fmu", fmi=version, compiled=False)
+    with zipfile.ZipFile(tmp_path / "u.fmu") as archive:
+        archive.extractall(tmp_path)
+    asked = ["-std=c99", "-fsyntax-only", "-Wall", "-Werror", "-Wno-unused", "-DWITH_FMI_HEADERS", f"-I{headers}"]
+    told = subprocess.run(
+        [COMPILER, *asked, "all.c"], cwd=tmp_path / "sources", capture_output=True, text=True, check=False
+    )
+    assert told.stderr == ""
+    source = "".join(path.read_text("utf-8") for path in (tmp_path / "sources").glob("fmi*.h"))
+    prefix = f"fmi{version[0]}"
+    wanted = set(re.findall(rf"{prefix}FullName\(\s*{prefix}(\w+)\)", (headers / f"{prefix}Functions.h").read_text()))
+    own = set(re.findall(rf"EXPORTED [\w *]*?{prefix}(\w+)\(", source)) | set(
+        re.findall(r"^REFUSED\((\w+),", source, re.M)
+    )
+    own |= set(re.findall(r"^QUIETLY\((\w+)\)", source, re.M))
+    own |= {f"{way}{kind}" for kind in re.findall(r"^NO_VALUES\((\w+),", source, re.M) for way in ("Get", "Set")}
+    exchange = {"EnterContinuousTimeMode", "EnterEventMode", "NewDiscreteStates", "CompletedIntegratorStep", "SetTime"}
+    exchange |= {
+        name for name in wanted if "ContinuousStates" in name or name in ("GetDerivatives", "GetEventIndicators")
+    }
+    missing = wanted - own - {""}
+    assert missing <= (exchange if version == "2.0" else set())  # what only units for model exchange have
+    assert len(wanted & own) > 20
 
 
 def test_the_same_line_gives_the_same_bytes(tmp_path: Path) -> None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -20,6 +21,8 @@ from torsional.solvers.transient.profiles import Level
 from torsional.solvers.transient.speed_profile import SpeedProfile
 from torsional.system import System
 
+Motion = tuple[Array, Array, Array]
+"""Angles, speeds and accelerations of the coordinates."""
 SENSED = ("angle", "speed", "acceleration")
 """What a unit may be told of nodes."""
 
@@ -120,7 +123,7 @@ class Running:
     """An instance of a part's unit, on a ``stack`` that ends it."""
 
     def __init__(self, part: FmuPart, system: System, stack: contextlib.ExitStack) -> None:
-        self.path = Path(part.path)
+        self.path, self._said, self._begun = Path(part.path), io.StringIO(), False
         folder, described = stack.enter_context(unpacked(self.path))
         self._inputs = [reference(described, name, "input", self.path) for name in part.inputs]
         self._torques = [reference(described, name, "output", self.path) for name in part.torques]
@@ -131,30 +134,43 @@ class Running:
         ]
         self._version = 2 if described.fmiVersion.startswith("2") else 3
         self._unit = self._instance(folder, described, stack)
-        self._set(list(given), list(given.values()))
+        with self._doing("does not take its parameters"):
+            self._set(list(given), list(given.values()))
 
     def _instance(self, folder: str, described: Any, stack: contextlib.ExitStack) -> Any:
         module = fmpy(f"fmpy.fmi{self._version}")
         own: dict[str, Any] = {"unzipDirectory": folder, "modelIdentifier": described.coSimulation.modelIdentifier}
         made = module.FMU2Slave if self._version == 2 else module.FMU3Slave
-        try:
+        with self._doing("does not start"):
             unit = made(guid=described.guid, instanceName=described.modelName, **own)
             unit.instantiate()
-        except Exception as error:
-            raise self._failed("does not start", error) from None
-        stack.callback(unit.freeInstance)
+        stack.callback(self._end)
         return unit
 
-    def _failed(self, what: str, error: Exception) -> ModelError:
-        return ModelError(f"the unit {what}", file=str(self.path), found=(str(error) or type(error).__name__)[:200])
+    def _end(self) -> None:
+        with contextlib.suppress(Exception), contextlib.redirect_stdout(self._said):
+            if self._begun:
+                self._unit.terminate()
+        self._unit.freeInstance()
+
+    @contextlib.contextmanager
+    def _doing(self, failing: str) -> Iterator[None]:
+        """Whatever goes wrong within is told in the words of the unit, which FMPy would print."""
+        try:
+            with contextlib.redirect_stdout(self._said):
+                yield
+        except Exception as error:
+            said = self._said.getvalue().strip().splitlines() or [str(error) or type(error).__name__]
+            found = said[-1].removeprefix("[ERROR] ")[:200]
+            raise ModelError(f"the unit {failing}", file=str(self.path), found=found) from None
 
     def _set(self, numbers: Sequence[int], values: Sequence[float]) -> None:
         if numbers:
             (self._unit.setReal if self._version == 2 else self._unit.setFloat64)(list(numbers), list(values))
 
-    def begin(self, time: float, motion: tuple[Array, Array, Array], frame: tuple[float, float]) -> Array:
+    def begin(self, time: float, motion: Motion, frame: tuple[float, float]) -> Array:
         """Initialised at a motion; the torques there."""
-        try:
+        with self._doing("cannot be initialised"):
             if self._version == 2:
                 self._unit.setupExperiment(startTime=time)
                 self._unit.enterInitializationMode()
@@ -162,20 +178,17 @@ class Running:
                 self._unit.enterInitializationMode(startTime=time)
             self._tell(motion, frame)
             self._unit.exitInitializationMode()
+            self._begun = True
             return self._torque()
-        except Exception as error:
-            raise self._failed("cannot be initialised", error) from None
 
-    def step(self, time: float, length: float, motion: tuple[Array, Array, Array], frame: tuple[float, float]) -> Array:
+    def step(self, time: float, length: float, motion: Motion, frame: tuple[float, float]) -> Array:
         """The torques after a step from a motion on."""
-        try:
+        with self._doing(f"gives up at {time:.6g} s"):
             self._tell(motion, frame)
             self._unit.doStep(time, length)
             return self._torque()
-        except Exception as error:
-            raise self._failed(f"gives up at {time:.6g} s", error) from None
 
-    def _tell(self, motion: tuple[Array, Array, Array], frame: tuple[float, float]) -> None:
+    def _tell(self, motion: Motion, frame: tuple[float, float]) -> None:
         turned = (frame[0], frame[1], 0.0)
         places = [(SENSED.index(quantity), row, ratio) for quantity, row, ratio in self._sensed]
         self._set(self._inputs, [float(row @ motion[i]) + ratio * turned[i] for i, row, ratio in places])

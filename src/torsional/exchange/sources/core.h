@@ -97,7 +97,7 @@ static bool machine_get(const Machine *m, uint32_t number, double *value)
 
 static bool machine_set(Machine *m, uint32_t number, double value)
 {
-    if (number >= GIVEN || !isfinite(value)) return false;
+    if (number >= GIVEN || !isfinite(value) || (number == STEP && !(value > 0.0))) return false;
     m->given[number] = value;
     return true;
 }

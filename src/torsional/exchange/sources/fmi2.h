@@ -9,6 +9,9 @@
 #define EXPORTED
 #endif
 
+#ifdef WITH_FMI_HEADERS /* those of the standard, against which this file can be checked */
+#include "fmi2Functions.h"
+#else
 typedef void *fmi2Component;
 typedef void *fmi2ComponentEnvironment;
 typedef void *fmi2FMUstate;
@@ -29,6 +32,7 @@ typedef struct {
     void (*stepFinished)(fmi2ComponentEnvironment, fmi2Status);
     fmi2ComponentEnvironment componentEnvironment;
 } fmi2CallbackFunctions;
+#endif
 
 typedef struct {
     Machine *machine;
@@ -130,7 +134,7 @@ EXPORTED fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], 
         if (OF(c)->begun && vr[k] >= INPUTS)
             return told(OF(c), fmi2Error, "parameters are set before the initialisation ends, outputs never");
         if (!machine_set(OF(c)->machine, vr[k], value[k]))
-            return told(OF(c), fmi2Error, "no such input or parameter, or a number that is not finite");
+            return told(OF(c), fmi2Error, "no such input or parameter, or a number that it cannot have");
     }
     return fmi2OK;
 }

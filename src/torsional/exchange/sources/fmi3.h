@@ -7,6 +7,9 @@
 #define EXPORTED
 #endif
 
+#ifdef WITH_FMI_HEADERS /* those of the standard, against which this file can be checked */
+#include "fmi3Functions.h"
+#else
 typedef void *fmi3Instance;
 typedef void *fmi3InstanceEnvironment;
 typedef void *fmi3FMUState;
@@ -17,7 +20,13 @@ typedef double fmi3Float64;
 typedef uint8_t fmi3Byte;
 typedef enum { fmi3OK, fmi3Warning, fmi3Discard, fmi3Error, fmi3Fatal } fmi3Status;
 typedef void (*fmi3LogMessageCallback)(fmi3InstanceEnvironment, fmi3Status, fmi3String, fmi3String);
-typedef void *fmi3Callback;
+typedef enum { fmi3Independent, fmi3Constant, fmi3Fixed, fmi3Tunable, fmi3Discrete, fmi3Dependent } fmi3DependencyKind;
+typedef enum { fmi3IntervalNotYetKnown, fmi3IntervalUnchanged, fmi3IntervalChanged } fmi3IntervalQualifier;
+typedef void (*fmi3IntermediateUpdateCallback)(void);
+typedef void (*fmi3ClockUpdateCallback)(fmi3InstanceEnvironment);
+typedef void (*fmi3LockPreemptionCallback)(void);
+typedef void (*fmi3UnlockPreemptionCallback)(void);
+#endif
 
 typedef struct {
     Machine *machine;
@@ -47,7 +56,7 @@ EXPORTED fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String to
                                                   fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events,
                                                   fmi3Boolean early, const fmi3ValueReference between[], size_t n,
                                                   fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
-                                                  fmi3Callback update)
+                                                  fmi3IntermediateUpdateCallback update)
 {
     (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early, (void)between, (void)n;
     (void)update;
@@ -78,8 +87,9 @@ EXPORTED fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String t
 EXPORTED fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
                                                         fmi3Boolean visible, fmi3Boolean logging,
                                                         fmi3InstanceEnvironment environment,
-                                                        fmi3LogMessageCallback log, fmi3Callback clock,
-                                                        fmi3Callback lock, fmi3Callback unlock)
+                                                        fmi3LogMessageCallback log, fmi3ClockUpdateCallback clock,
+                                                        fmi3LockPreemptionCallback lock,
+                                                        fmi3UnlockPreemptionCallback unlock)
 {
     (void)clock, (void)lock, (void)unlock;
     return fmi3InstantiateModelExchange(name, token, resources, visible, logging, environment, log);
@@ -152,7 +162,7 @@ EXPORTED fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[]
         if (OF(c)->begun && vr[k] >= INPUTS)
             return told(OF(c), fmi3Error, "parameters are set before the initialisation ends, outputs never");
         if (!machine_set(OF(c)->machine, vr[k], value[k]))
-            return told(OF(c), fmi3Error, "no such input or parameter, or a number that is not finite");
+            return told(OF(c), fmi3Error, "no such input or parameter, or a number that it cannot have");
     }
     return fmi3OK;
 }
@@ -211,7 +221,7 @@ EXPORTED fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference vr[], 
 #define NO_DEPENDENCIES "dependencies of variables are those of the model description"
 REFUSED(GetNumberOfVariableDependencies, NO_DEPENDENCIES, fmi3Instance c, fmi3ValueReference vr, size_t *n)
 REFUSED(GetVariableDependencies, NO_DEPENDENCIES, fmi3Instance c, fmi3ValueReference vr, size_t of[],
-        fmi3ValueReference on[], size_t at[], int kinds[], size_t n)
+        fmi3ValueReference on[], size_t at[], fmi3DependencyKind kinds[], size_t n)
 
 typedef struct {
     bool begun;
@@ -278,9 +288,9 @@ REFUSED(GetAdjointDerivative, NO_DERIVATIVES, fmi3Instance c, const fmi3ValueRef
 REFUSED(GetOutputDerivatives, NO_DERIVATIVES, fmi3Instance c, const fmi3ValueReference vr[], size_t n,
         const int32_t orders[], fmi3Float64 out[], size_t no)
 REFUSED(GetIntervalDecimal, NO_EVENTS, fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 in[],
-        int q[])
+        fmi3IntervalQualifier q[])
 REFUSED(GetIntervalFraction, NO_EVENTS, fmi3Instance c, const fmi3ValueReference vr[], size_t n, uint64_t a[],
-        uint64_t b[], int q[])
+        uint64_t b[], fmi3IntervalQualifier q[])
 REFUSED(GetShiftDecimal, NO_EVENTS, fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 shifts[])
 REFUSED(GetShiftFraction, NO_EVENTS, fmi3Instance c, const fmi3ValueReference vr[], size_t n, uint64_t a[],
         uint64_t b[])
