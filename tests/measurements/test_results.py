@@ -19,8 +19,11 @@ from torsional import (
     Shaft,
     assemble,
     load_model,
+    mean_rotation,
     modal,
     run_up_response,
+    shaft_from_encoder,
+    track_orders,
     transient,
 )
 from torsional.measurements import read_measurement, write_measurement
@@ -68,3 +71,17 @@ def test_order_curves(tmp_path: Path, ending: str) -> None:
 def test_a_result_along_no_axis_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match=r"the result runs along no axis; found mode, node.*results over time"):
         write_measurement(modal(LINE), tmp_path / "modes.uff")
+
+
+def test_tracked_orders_of_a_run_down(tmp_path: Path) -> None:
+    """Speeds that fall are written from the lowest up, each with its own values."""
+    time = np.arange(0.0, 4.0, 1e-3)
+    alpha = 220.0 * time - 20.0 * time**2
+    turning = mean_rotation(shaft_from_encoder(xr.DataArray(alpha, {"time": time}, attrs={"units": "rad"})))
+    wave = xr.DataArray((1.0 + time) * np.cos(3 * alpha), {"time": time}, name="M", attrs={"units": "Nm"})
+    found = track_orders(wave, turning, [3.0])
+    assert (np.diff(found.speed) < 0).all()
+    back = read_measurement(write_measurement(found, tmp_path / "orders.uff"))
+    np.testing.assert_allclose(back.speed, found.speed.values[::-1] / RPM, rtol=1e-14)
+    np.testing.assert_array_equal(back["M order 3"], found.M.sel(order=3.0).values[::-1])
+    assert back["M order 3"].attrs["units"] == "Nm"

@@ -46,8 +46,9 @@ def test_columns_are_channels_with_units_and_sampling(tmp_path: Path) -> None:
         "\ufefftime [s]\ta [Nm]\n0.5\t1.25\n1.5\t-2\n",
         'time [s],a [Nm]\n"0,5","1,25"\n"1.5","-2"\n',
         "Time;a\ns;Nm\n0.5; 1.25\n1.5;-2\n",
+        "sep=;\nDevice: rig 3\nDate; 2026-11-23\n\ntime;a\ns;Nm\n0,5;1,25\n1,5;-2\n",
     ],
-    ids=["decimal commas", "tabs and a byte order mark", "quoted cells", "units below the names"],
+    ids=["decimal commas", "tabs and a byte order mark", "quoted cells", "units below the names", "lines above"],
 )
 def test_dialects(tmp_path: Path, text: str) -> None:
     data = read(tmp_path, text)
@@ -82,7 +83,7 @@ def test_channels_of_one_name_and_of_a_rasters_name_are_told_apart(tmp_path: Pat
     [
         ("", "the file is empty"),
         ("time [s],a\n", "the table has no row below its header; found 'time [s],a'"),
-        ("0,1\n1,2\n", "line 1: the table has no header with names"),
+        ("0,1\n1,2\n", "the table has no header with names; found '0,1'"),
         ("a [V],b [V]\n0,1\n1,2\n", "no column holds the time; found 'a', 'b'; name a column named 'time [s]'"),
         ("time [s],a\n0,1\n1\n", "line 3: 2 cells are wanted; found 1 cells in '1'"),
         ("time [s],a\n0,1,5\n1,2,5\n", "line 2: 2 cells are wanted; found 3 cells in '0,1,5'; decimals take a point"),

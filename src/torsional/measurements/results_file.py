@@ -38,6 +38,8 @@ def channels_of(data: xr.Dataset) -> Found:
     out, such as the state at the end.  Raises ModelError for a result without any axis."""
     channels: list[Channel] = []
     left_out: list[str] = []
+    for axis in AXES[1:]:  # a run-down has its speeds from the highest down
+        data = data.sortby(axis) if axis in data.dims else data
     rasters = {axis: _raster(data, axis) for axis in AXES if axis in data.dims}
     if not rasters and data.attrs.get("analysis") != ANALYSIS:
         remedy = "results over time, crank angle, speed or frequency are written"

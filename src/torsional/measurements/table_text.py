@@ -1,7 +1,7 @@
 """Measurements as text tables: a column a channel, headed ``name [unit]``, and columns of time.
 
-Separators are comma, semicolon or tab; where it is no comma, decimals may take one.  A second line without numbers
-holds the units.  Empty cells are missing values.
+Separators are comma, semicolon or tab; where it is no comma, decimals may take one.  What loggers write above the
+header is passed over; a second line without numbers holds the units.  Empty cells are missing values.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ from torsional.units import quoted
 
 BYTES = 400_000_000
 COLUMNS = 5000
+HEADS = 200
+"""Lines among which the header is looked for."""
 _HEADED = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]")
 _NUMBER = re.compile(r"\s*[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*")
 _COMMA = re.compile(r"\d,\d|[^\d],\d|\d,[^\d]|\d,$")
@@ -39,7 +41,9 @@ def read(path: Path) -> Found:
 def found_in(text: str) -> Found:
     """The channels of a table's text."""
     lines, numbers = _lines(text)
-    separator = max(",;\t", key=lines[0].count)
+    above = _above(lines)
+    lines, numbers = lines[above:], numbers[above:]
+    separator = _separator(lines[0])
     header = [cell.strip() for cell in next(csv.reader([lines[0]], delimiter=separator))]
     if len(header) > COLUMNS:
         raise ModelError("the table has too many columns", found=str(len(header)), allowed=f"at most {COLUMNS}")
@@ -61,11 +65,33 @@ def _lines(text: str) -> tuple[list[str], list[int]]:
     return [line for _, line in held], [i for i, _ in held]
 
 
+def _separator(line: str) -> str:
+    return max(",;\t", key=line.count)
+
+
+def _above(lines: list[str]) -> int:
+    """How many lines stand above the header: the first one that has as many columns as a line of numbers below it, or
+    below a line of units."""
+    for i in range(min(len(lines) - 1, HEADS)):
+        separator = _separator(lines[i])
+        count = lines[i].count(separator)
+        below = [line for line in lines[i + 1 : i + 3] if line.count(separator) == count]
+        if count and any(_is_numbers(line, separator) for line in below) and not _is_numbers(lines[i], separator):
+            return i
+    return 0
+
+
+def _is_numbers(line: str, separator: str) -> bool:
+    """Whether a line holds numbers alone, some of which may be missing."""
+    cells = [cell.strip().strip('"').replace(",", ".") for cell in line.split(separator)]
+    return any(map(_NUMBER.fullmatch, cells)) and all(cell in MISSING or _NUMBER.fullmatch(cell) for cell in cells)
+
+
 def _headed(header: list[str], lines: list[str], separator: str) -> tuple[list[str], list[str], int]:
     """Names and units of the columns, and how many lines below the header hold units."""
     if all(_NUMBER.fullmatch(cell) for cell in header):
         remedy = "write a first line such as 'time [s],n_mot [rpm]'"
-        raise ModelError("the table has no header with names", where="line 1", found=quoted(lines[0]), remedy=remedy)
+        raise ModelError("the table has no header with names", found=quoted(lines[0]), remedy=remedy)
     pairs = [name_and_unit(cell) for cell in header]
     names, units = [name for name, _ in pairs], [unit for _, unit in pairs]
     below = next(csv.reader(lines[1:2], delimiter=separator), [])
