@@ -15,13 +15,14 @@ import pyarrow.parquet
 import pytest
 import scipy.io
 import xarray as xr
+from tests.measurements.mdf_by_hand import unsorted
 from tests.measurements.recordings import rig
 from tests.measurements.test_other_programs import newer_matlab, quiet_module
 
 from torsional import ModelError
 from torsional.measurements import read_measurement, write_measurement
 
-KINDS = [".csv", ".uff", ".mat", ".parquet", ".mf4", "packed.mf4", "packed.mat", "newer.mat"]
+KINDS = [".csv", ".uff", ".mat", ".parquet", ".mf4", "packed.mf4", "turns.mf4", "packed.mat", "newer.mat"]
 HEAD = 3000
 """Bytes in front, where the structure of most formats stands; half of the changes are made there."""
 
@@ -29,6 +30,9 @@ HEAD = 3000
 def sound(folder: Path, kind: str) -> Path:
     """A whole file of a kind."""
     data, path = rig(), folder / f"sound{kind}"
+    if kind == "turns.mf4":
+        path.write_bytes(unsorted([(0.01 * i, 100 * i) for i in range(40)], [(0.1 * i, 1.5 * i) for i in range(7)]))
+        return path
     if kind == "newer.mat":
         signals = {
             "time": data.time.values,

@@ -11,6 +11,7 @@ import numpy as np
 import pandas
 import pytest
 import scipy.io
+from tests.measurements.mdf_by_hand import unsorted
 from tests.measurements.recordings import rig
 
 from torsional import ModelError
@@ -101,6 +102,17 @@ def test_mdf_with_conversions_bits_and_texts(tmp_path: Path) -> None:
         assert data.attrs["left_out"] == "words" and data.oil.attrs["group"] == "ECU"
 
 
+def test_mdf_written_byte_by_byte_with_records_that_alternate(tmp_path: Path) -> None:
+    fast = [(0.01 * i, 100 * i) for i in range(40)]
+    slow = [(0.1 * i, -1.5 * i) for i in range(7)]
+    (tmp_path / "run.mf4").write_bytes(unsorted(fast, slow))
+    data = read_measurement(tmp_path / "run.mf4")
+    np.testing.assert_array_equal(np.column_stack([data.time, data.level]), fast)
+    np.testing.assert_array_equal(np.column_stack([data.time_2, data["T"]]), slow)
+    assert (data.level.attrs["units"], data["T"].attrs["group"]) == ("mm", "slow")
+    assert data.attrs["start"].startswith("2023-11-14T23:13:20")
+
+
 def test_mdf_samples_that_are_marked_invalid_are_missing(tmp_path: Path) -> None:
     asammdf = quiet_module("asammdf")
     bad = np.arange(50) % 7 == 3
@@ -118,7 +130,8 @@ def test_mdf_of_the_third_version_says_what_to_do(tmp_path: Path) -> None:
     with asammdf.MDF(version="3.30") as file:
         file.append(asammdf.Signal(WAVE, TIME, name="wave"))
         file.save(tmp_path / "run.mdf")
-    with pytest.raises(ModelError, match=r"this version of MDF is not read; found version 3\.30; allowed: 4; convert"):
+    told = r"this version of MDF is not read; found version 3\.30; allowed: 4\.00 to 4\.20; convert"
+    with pytest.raises(ModelError, match=told):
         read_measurement(tmp_path / "run.mdf")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from torsional.errors import ModelError
 from torsional.files.opening import read_bytes
 from torsional.measurements.formats import library
 from torsional.measurements.mdf_blocks import Walk
-from torsional.measurements.recording import PULSES, Channel, Found, Raster, pulses
+from torsional.measurements.recording import PULSES, Channel, Found, Raster, printable, pulses
 from torsional.numerics.arrays import Array
 
 BYTES = 4_000_000_000
@@ -26,11 +27,11 @@ _TEXTS = 6
 def read(path: Path) -> Found:
     """The channels of numbers of an MDF file, conversions applied; those that turn numbers into texts are not."""
     data = read_bytes(path, BYTES)
-    if data[8:9] != b"4":
-        told = {"found": f"version {data[8:16].split(bytes(1))[0].decode('latin-1').strip()}", "allowed": "4"}
+    version = printable(data[8:16].rstrip(b"\0").decode("latin-1"))
+    if not re.fullmatch(r"4\.\d\d", version):
+        told = {"found": f"version {version}", "allowed": "4.00 to 4.20"}
         raise ModelError("this version of MDF is not read", remedy="convert it with the program that wrote it", **told)
     Walk(data).whole()
-    version = data[8:12].decode("latin-1")
     with library("asammdf", "MDF").MDF(io.BytesIO(data), process_bus_logging=False) as file:
         channels: list[Channel] = []
         left_out: list[str] = []

@@ -24,9 +24,8 @@ RAW = 8 * VALUES
 """Bytes of records, unpacked."""
 _STRANGE = re.compile(r"[^A-Za-z0-9_\s+\-*/^().,]|__|\.\s*(?![eE][+-]?\d)[A-Za-z_]")
 """What no formula has: other marks, and a point before a name."""
-_PLACES = {0, 2, 4, 5}
-"""Kinds of channels whose values stand in the record: of fixed length, masters, for synchronisation, of a length told
-elsewhere."""
+_KINDS, _VIRTUAL, _FORMS = range(7), (3, 6), range(17)
+"""Types of channels, those that stand in no record, and types of data."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +54,8 @@ class Walk:
             remedy = "open and save it once in the program that recorded it"
             raise ModelError("the recording was not finished properly", remedy=remedy)
         header = self.block(HEADER, "HD")
+        if len(header.links) != 6 or header.size < 32:
+            raise ModelError("the head of the file is damaged", found=f"{len(header.links)} links", allowed="6")
         for link, kind in ((1, "FH"), (3, "AT"), (4, "EV")):
             for block in self._chain(_link(header, link), kind):
                 self._text(_link(block, 1 if kind == "FH" else 3))
@@ -91,22 +92,22 @@ class Walk:
 
     def _data_group(self, group: Block) -> None:
         self._text(_link(group, 3))
-        wanted = 0
+        wanted, number = 0, self._unpack("<B", group)[0]  # bytes of the number in front of records that alternate
         for records in self._chain(_link(group, 1), "CG"):
             cycles, size = self._channel_group(records)
-            wanted += cycles * size
-        unsorted = self._unpack("<B", group)[0]
+            wanted += cycles * (size + number)
         there = self._bytes_of(_link(group, 2))
         self._raw += there
         if self._raw > RAW:
             raise ModelError("the recording is too large", found=f"{self._raw} bytes", allowed=f"{RAW} bytes")
-        if there < wanted and not unsorted:
+        if there < wanted:
             found = f"{there} bytes of records where {wanted} are announced"
             raise ModelError("the file is cut: records are missing", found=found)
 
     def _channel_group(self, records: Block) -> tuple[int, int]:
         """Number and size of the records of a group, whose channels must lie within them."""
         _, cycles, flags, _, data, invalid = self._unpack("<QQHH4xII", records)
+        self._whole_links(records, 2, 3, 4)
         self._text(_link(records, 5))
         if flags & 1:  # texts of other channels, of any length
             return 0, 0
@@ -121,6 +122,7 @@ class Walk:
         count = 0
         for channel in self._chain(at, "CN"):
             self._fits(channel, record, invalid)
+            self._whole_links(channel, 2, 3, 4, 5)
             for link in (6, 7):
                 self._text(_link(channel, link))
             self._formula(_link(channel, 4))
@@ -130,12 +132,21 @@ class Walk:
             count += 1
         return count
 
+    def _whole_links(self, block: Block, *numbers: int) -> None:
+        """Blocks that are read for their words stand in the file."""
+        for at in (_link(block, number) for number in numbers):
+            if at:
+                self.block(at)
+
     def _fits(self, channel: Block, record: int, invalid: int) -> None:
         kind, _, form, first, offset, bits, flags, invalid_bit = self._unpack("<BBBBIIII", channel)
-        beyond = offset + (first + bits + 7) // 8 > record or first > 7
-        number = form <= 5
-        wide = number and not (bits in (16, 32, 64) if form > 3 else 0 < bits <= 64)
-        if (kind in _PLACES and (beyond or wide)) or (flags & 2 and invalid_bit >= 8 * invalid):
+        if kind not in _KINDS or form not in _FORMS or first > 7:
+            found = f"type {kind}, data type {form}, bit {first}"
+            raise ModelError("a channel is damaged", where=f"byte {channel.at}", found=found)
+        real = form in (4, 5)
+        wide = form <= 5 and not (bits in (16, 32, 64) and first == 0 if real else 0 < bits <= 64 - first)
+        beyond = offset + (first + bits + 7) // 8 > record
+        if (kind not in _VIRTUAL and (beyond or wide)) or (flags & 2 and invalid_bit >= 8 * invalid):
             found = f"bits {8 * offset + first} to {8 * offset + first + bits} of {8 * record}"
             raise ModelError("a channel lies outside its record", where=f"byte {channel.at}", found=found)
 
@@ -144,6 +155,7 @@ class Walk:
         if not at:
             return
         block = self.block(at, "CC")
+        self._whole_links(block, *range(len(block.links)))
         if self._unpack("<B", block)[0] != 3:
             return
         text = self._read_text(_link(block, 4))
