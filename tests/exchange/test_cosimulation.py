@@ -133,7 +133,9 @@ def test_what_goes_wrong_is_told_in_the_units_words(spring: Path, capsys: pytest
     with pytest.raises(ModelError, match=r"time 0.0\d+ s: the line and its units lose the motion"):
         tv.co_simulation(line, load, 1.0, part, speed=0.0, communication_step=1e-3)
     part = dataclasses.replace(part, parameters={"step": -1.0})
-    with pytest.raises(ModelError, match=r"dmf.fmu: the unit does not take its parameters; found .*a number that it cannot have"):
+    with pytest.raises(
+        ModelError, match=r"dmf.fmu: the unit does not take its parameters; found .*a number that it cannot have"
+    ):
         tv.co_simulation(line, load, 1.0, part, speed=0.0, communication_step=1e-3)
     assert capsys.readouterr().out == ""
 
