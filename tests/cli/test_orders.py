@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -19,17 +20,23 @@ RUN = RunUp(800 * RPM, 200 * RPM, 3.0, {1.5: 5e-3 + 0j, 3.0: 2e-2 * np.exp(1j)})
 
 
 @pytest.fixture
-def record() -> str:
+def record(table: str) -> str:
+    Path("run.csv").write_text(table, encoding="utf-8")
+    return "run.csv"
+
+
+@pytest.fixture(scope="module")
+def table() -> str:
     """A voltage of a 12−1 wheel, the torque behind it, the speed as it is told to all."""
     time = np.arange(0.0, 3.0, 1 / 8000)
     alpha = RUN.crank_angle(time)
     tooth = (alpha + RUN.vibration(alpha)) * 12 / (2 * np.pi)
     volts = 5.0 * (tooth % 1 < 0.5) * (np.floor(tooth) % 12 < 11)
     torque = 100 * np.cos(3 * alpha) + 20 * np.cos(1.5 * alpha + 0.5)
-    table = np.column_stack([time, volts, torque, RUN.speed(alpha) / RPM])
-    head = "time [s],tacho [V],M_gbx [Nm],n_mot [rpm]"
-    np.savetxt("run.csv", table, "%.7g", ",", header=head, comments="")
-    return "run.csv"
+    columns = np.column_stack([time, volts, torque, RUN.speed(alpha) / RPM])
+    text = io.StringIO()
+    np.savetxt(text, columns, "%.7g", ",", header="time [s],tacho [V],M_gbx [Nm],n_mot [rpm]", comments="")
+    return text.getvalue()
 
 
 WHEEL = ("--tacho", "tacho", "--wheel", "12-1", "--orders", "1.5,3")

@@ -48,7 +48,7 @@ class RunUp:
     def passing(self, angles: Array) -> Array:
         """When the shaft stands at these angles [rad], by Newton's method with a slope from differences."""
         alpha = angles / self.ratio
-        for _ in range(50):
+        for _ in range(12):
             slope = (self.vibration(alpha + 1e-6) - self.vibration(alpha - 1e-6)) / 2e-6
             alpha = alpha - (self.ratio * alpha + self.vibration(alpha) - angles) / (self.ratio + slope)
         return self.time(alpha)
