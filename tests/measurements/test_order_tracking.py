@@ -241,6 +241,19 @@ def test_refusals() -> None:
         tv.mean_rotation(steady_wheel(run), marks=[1.0, 1.03, 1.05])
 
 
+def test_what_is_of_another_kind_is_told_what_makes_it() -> None:
+    shaft = steady_wheel(RunUp(900 * RPM, 30 * RPM, 3.0))
+    rotation = tv.mean_rotation(shaft)
+    with pytest.raises(
+        tv.ModelError, match=r"shaft: .*'shaft_angle' is wanted; found mean rotation; shaft_from_pulses"
+    ):
+        tv.mean_rotation(rotation)
+    with pytest.raises(tv.ModelError, match=r"rotation: .*'crank_angle' is wanted; found shaft angle; mean_rotation"):
+        tv.track_orders(None, shaft, [3.0], shafts={"c": shaft})
+    with pytest.raises(tv.ModelError, match=r"convention: .*found 'peak'; allowed: 0-peak, RMS, peak-to-peak"):
+        tv.in_convention(xr.DataArray([1.0]), "peak")  # type: ignore[arg-type]
+
+
 def test_conventions() -> None:
     size = xr.DataArray([3.0 + 4.0j])
     told = [tv.in_convention(size, name) for name in ("0-peak", "RMS", "peak-to-peak")]

@@ -98,7 +98,11 @@ def shaft_from_encoder(angle: xr.DataArray, *, unit: str | None = None) -> xr.Da
     turned = -turned if turned.size and turned[-1] < turned[0] else turned
     steps = np.diff(turned)
     if steps.size < 3 or not turned[-1] - turned[0] > TURN:
-        raise ModelError("the shaft turns less than once", where=where, found=f"{np.ptp(turned) / TURN:.3g} turns")
+        raise ModelError(
+            "the shaft turns less than once",
+            where=where,
+            found=f"{np.ptp(turned) / TURN if turned.size else 0:.3g} turns",
+        )
     if np.abs(steps).max() > 0.8 * np.pi:
         raise ModelError("the angle is sampled too seldom to be followed", where=where, remedy="sample it more often")
     told: dict[str, object] = {"name": where, "source": "encoder"}

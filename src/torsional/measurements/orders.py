@@ -14,7 +14,7 @@ from torsional.engine.orders import HALF_ORDERS
 from torsional.errors import ModelError
 from torsional.measurements.resampling import common_span, resampled
 from torsional.measurements.rotation import crank_angle_at, deviation, mean_rotation
-from torsional.measurements.signals import raster
+from torsional.measurements.signals import raster, refuse_other
 from torsional.numerics.arrays import Array, ComplexArray
 from torsional.results import Variable, dataset
 from torsional.solvers.transient.orders import order_tracking, samples_a_window
@@ -40,6 +40,8 @@ def torsional_angle(shaft: xr.Dataset, rotation: xr.Dataset) -> xr.DataArray:
     >>> float(abs(found).max().round(4))
     0.01
     """
+    refuse_other(shaft, "shaft_angle", "shaft", "shaft_from_pulses")
+    refuse_other(rotation, "crank_angle", "rotation", "mean_rotation")
     time = shaft.time.values
     ends = np.clip([rotation.time.values[0], rotation.time.values[-1]], time[0], time[-1])
     turned = float(np.ptp(crank_angle_at(rotation, ends)))
@@ -88,6 +90,7 @@ def track_orders(
     >>> found.mount.dims, abs(found.mount).isel(speed=5).values.round(3).tolist(), found.mount.attrs["units"]
     (('speed', 'order'), [0.0, 0.3], 'mm')
     """
+    refuse_other(rotation, "crank_angle", "rotation", "mean_rotation")
     given, around = _given(signals, bool(shafts)), shafts or {}
     turning = {name: torsional_angle(shaft, rotation).rename(name) for name, shaft in around.items()}
     columns = [column for signal in given.values() for column in _columns(signal)]
@@ -190,5 +193,8 @@ def in_convention(orders: xr.DataArray, convention: Literal["0-peak", "RMS", "pe
     >>> in_convention(xr.DataArray([3.0 + 4.0j]), "peak-to-peak").values.tolist()
     [10.0]
     """
+    if convention not in CONVENTIONS:
+        told = {"found": repr(convention), "allowed": ", ".join(CONVENTIONS)}
+        raise ModelError("there is no such convention of amplitudes", where="convention", **told)
     found: xr.DataArray = abs(orders) * CONVENTIONS[convention]
     return found.assign_attrs({**orders.attrs, "amplitude": convention})

@@ -11,7 +11,7 @@ from torsional.arguments import checked
 from torsional.engine.orders import CYCLE
 from torsional.errors import ModelError
 from torsional.measurements.rotation import crank_angle_at, time_at
-from torsional.measurements.signals import is_even, named, raster
+from torsional.measurements.signals import is_even, named, raster, refuse_other
 from torsional.numerics.arrays import Array
 
 PER_PERIOD = 12
@@ -65,6 +65,7 @@ def resampled(
     >>> bool(abs(found - np.cos(3 * found.crank_angle)).max() < 1e-3)
     True
     """
+    refuse_other(rotation, "crank_angle", "rotation", "mean_rotation")
     time, values = raster(signal)
     low, high = common_span(rotation, [time], per_turn) if span is None else span
     name, order = named(signal), per_turn / ORDERS

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from torsional.arguments import checked
 from torsional.engine.orders import CYCLE
 from torsional.errors import ModelError
+from torsional.measurements.signals import refuse_other
 from torsional.numerics.arrays import Array
 from torsional.results import Variable, dataset
 
@@ -39,6 +40,7 @@ def mean_rotation(shaft: xr.Dataset, *, ratio: float = 1.0, cycle: float = CYCLE
     >>> bool(abs(found.speed - 100.0).max() < 1e-3)
     True
     """
+    refuse_other(shaft, "shaft_angle", "shaft", "shaft_from_pulses")
     if not (ratio > 0 and cycle > 0):
         raise ModelError("ratio and cycle must be positive", where="mean_rotation", found=f"{ratio:g}, {cycle:g} rad")
     angle, time = shaft.shaft_angle.values, shaft.time.values

@@ -13,7 +13,7 @@ from torsional.errors import ModelError
 from torsional.measurements.filling import filled
 from torsional.measurements.pulses import clock_tick
 from torsional.measurements.rotation import deviation, mean_rotation
-from torsional.measurements.signals import refuse_times
+from torsional.measurements.signals import refuse_other, refuse_times
 from torsional.measurements.teeth import numbered
 from torsional.numerics.arrays import Array
 from torsional.results import Variable, dataset
@@ -89,6 +89,7 @@ def tooth_pitch(shaft: xr.Dataset, begin: float, end: float) -> Array:
     >>> bool(abs(found - (off - off.mean())).max() < 2e-6)
     True
     """
+    refuse_other(shaft, "shaft_angle", "shaft", "shaft_from_pulses")
     if shaft.attrs.get("source") != "pulses":
         raise ModelError("a pitch is learnt from pulses", where="shaft", found=str(shaft.attrs.get("source", "none")))
     teeth = int(shaft.attrs["teeth"])

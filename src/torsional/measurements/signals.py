@@ -57,3 +57,10 @@ def factor(signal: xr.DataArray, quantity: str, unit: str | None) -> float:
         remedy = f"say which one, as unit={QUANTITIES[quantity].shown!r}"
         raise ModelError(f"the channel needs a unit of {kind}", where=named(signal), found=told, remedy=remedy)
     return found
+
+
+def refuse_other(data: xr.Dataset, variable: str, argument: str, maker: str) -> None:
+    """ModelError for a Dataset that is of another kind than a function wants, with what makes one."""
+    if variable not in data.variables:
+        told = {"found": str(data.attrs.get("analysis", "a Dataset without it")), "remedy": f"{maker} makes one"}
+        raise ModelError(f"a Dataset with '{variable}' is wanted", where=argument, **told)

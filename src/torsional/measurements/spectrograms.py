@@ -7,7 +7,7 @@ import xarray as xr
 
 from torsional.arguments import checked
 from torsional.errors import ModelError
-from torsional.measurements.signals import is_even, named, raster
+from torsional.measurements.signals import is_even, named, raster, refuse_other
 from torsional.numerics.arrays import Array
 from torsional.results import dataset
 from torsional.units import QUANTITIES
@@ -36,6 +36,7 @@ def speed_spectrogram(
     >>> round(float(found.spectrum.isel(speed=3).sel(spectrum_frequency=50.0)), 5)
     0.2
     """
+    refuse_other(rotation, "crank_angle", "rotation", "mean_rotation")
     time, values = raster(signal)
     seen = (time >= float(rotation.time[0])) & (time <= float(rotation.time[-1]))
     step, values = _even(time[seen], values[seen])
