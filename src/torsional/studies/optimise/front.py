@@ -7,6 +7,10 @@ import numpy as np
 from torsional.numerics.arrays import Array, IntArray
 
 
+SAME = 1e-4
+"""Over their size, by what objectives are equal: searches from several starts end at one design more than once."""
+
+
 def front(goals: Array) -> IntArray:
     """Places of the designs (designs, objectives) that no other one betters, by rising first objective; equals once.
 
@@ -17,7 +21,7 @@ def front(goals: Array) -> IntArray:
     kept: list[int] = []
     for place in order:
         mine = goals[kept]
-        if not (mine <= goals[place]).all(axis=1).any():
+        if not (mine <= goals[place] + SAME * abs(goals[place])).all(axis=1).any():
             kept.append(int(place))
     return np.array(kept, dtype=np.int64)
 
