@@ -6,7 +6,6 @@ import numpy as np
 
 from torsional.numerics.arrays import Array, IntArray
 
-
 SAME = 1e-4
 """Over their size, by what objectives are equal: searches from several starts end at one design more than once."""
 
