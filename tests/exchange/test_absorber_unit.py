@@ -88,7 +88,11 @@ def test_flywheels_stay_outside_and_are_told(tmp_path: Path) -> None:
     tv.export_fmu(absorber, tmp_path / "a.fmu", compiled=False)
     described = fmpy.read_model_description(str(tmp_path / "a.fmu"))
     assert described.description.endswith("without primary of 1.2 kg.m2, secondary of 1 kg.m2")
-    assert {v.name for v in described.modelVariables if v.causality == "parameter"} == {"dmf.damping", "step"}
+    assert {v.name for v in described.modelVariables if v.causality == "parameter"} == {
+        "dmf.stiffness_factor",
+        "dmf.damping",
+        "step",
+    }
 
 
 def test_a_single_flywheel_is_no_absorber_with_two_sides(tmp_path: Path) -> None:

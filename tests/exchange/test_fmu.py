@@ -19,7 +19,7 @@ from tests.shipped import shipped
 import torsional as tv
 from torsional.errors import ModelError
 from torsional.exchange.fmu.packing import Packed
-from torsional.laws import Law, plain
+from torsional.laws import Hinges, Law, plain
 
 fmpy = pytest.importorskip("fmpy")
 SPEED, TORQUE = 900 * tv.RPM, 1200.0
@@ -142,13 +142,17 @@ def test_parameters_are_those_of_a_changed_line(tmp_path: Path) -> None:
         "load": tv.Inertia(9.0),
         "s": tv.Shaft("a", "b", 1e4, 5.0),
         "gear": tv.GearPair("b", "wheel", 2.0),
+        "stages": tv.Coupling("ground", "a", Hinges.staged([(20.0, 1e3), (400.0, 3e3)])),
         "wheel": tv.Inertia(0.5),
         "t": tv.Shaft("wheel", "load", 4e4, 2.0),
     }
     line = tv.Powertrain(parts)
     tv.export_fmu(line, tmp_path / "line.fmu", inputs={"a": 100.0}, start="rest", step=1e-3)
     values = {"wheel.inertia": 0.7, "s.stiffness": 1.3e4, "t.damping": 9.0, "a.applied_torque": 150.0, "step": 1e-4}
+    values["stages.stiffness_factor"] = 1.5
+    stiffer = Hinges.staged([(30.0, 1.5e3), (600.0, 4.5e3)])
     other = line.replaced("wheel", inertia=0.7).replaced("s", stiffness=1.3e4).replaced("t", damping=9.0)
+    other = other.replaced("stages", law=stiffer)
     found = simulated(tmp_path / "line.fmu", 0.1, start_values=values)
     own = tv.transient(tv.assemble(other), tv.TorqueHistory("a", (0.0,), (150.0,)), 0.1, "rest", speed=0.0)
     assert_like(found, own, "load", "s", 1e-9)

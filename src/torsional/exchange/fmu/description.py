@@ -12,6 +12,7 @@ from torsional.exchange.fmu.unit import Unit, Variable
 
 VERSIONS = ("2.0", "3.0")
 UNITS: Mapping[str, Mapping[str, int]] = {
+    "1": {},
     "s": {"s": 1},
     "rad": {"rad": 1},
     "rad/s": {"rad": 1, "s": -1},

@@ -51,8 +51,8 @@ def export_fmu(
     torques of elements come out, or those named by ``outputs``.  ``drives``, ``speed`` [rad/s], ``hold``, ``start``,
     ``step`` [s], ``method``, ``spectral_radius`` as in `transient`, whose steps the unit takes: same laws, same scheme,
     same figures.  ``detailed``: with an absorber's inner parts.  ``fmi``: 2.0 or 3.0.  ``compiled``: with a binary for
-    this machine; None: where a C compiler is at hand.  Inertias, stiffnesses of plain springs and damping coefficients
-    are parameters, and so is the step.
+    this machine; None: where a C compiler is at hand.  Inertias, stiffnesses of plain springs, factors on those of
+    springs with stages, damping coefficients and the step are parameters.
 
     Gives the file's size [bytes], the platform it is compiled for and the names of its variables.  Raises ModelError
     for what cannot be written.

@@ -11,8 +11,8 @@ import numpy as np
 
 from torsional.errors import ModelError
 from torsional.laws import Contacts
-from torsional.numerics.arrays import Array
-from torsional.numerics.motion.data import DAMPER, SPRING
+from torsional.numerics.arrays import Array, IntArray
+from torsional.numerics.motion.data import CHANGE, DAMPER, SPRING
 from torsional.numerics.stepping.plan import Masses, Plan
 from torsional.numerics.stepping.state import ACCELERATION, Q, State, V
 from torsional.solvers.transient.marching import Accuracy
@@ -110,7 +110,8 @@ def unique(unit: Unit) -> Unit:
 
 
 def parameters_of(plan: Plan, system: System, heavy: Sequence[str] = ()) -> list[Parameter]:
-    """Inertias, stiffnesses of plain springs and damping coefficients, but for the masses named ``heavy``."""
+    """Inertias but for those of masses named ``heavy``, stiffnesses of plain springs and factors on those of others,
+    damping coefficients."""
     masses, c = system.masses, system.connections
     hung = {name.rpartition(".")[0] for name, swing in zip(c.names, c.swings, strict=False) if swing is not None}
     found: list[Parameter] = [
@@ -126,10 +127,21 @@ def parameters_of(plan: Plan, system: System, heavy: Sequence[str] = ()) -> list
         if c.laws[e] is None and c.stiffness[e]:
             told = Variable(f"{name}.stiffness", "N.m/rad", f"stiffness of {name}", float(c.stiffness[e]))
             found.append((told, (Slope("plan.constants", SPRING * count + e, 1.0),)))
+        if (hinged := np.flatnonzero(plan.hinges.of == e)).size:
+            told = Variable(f"{name}.stiffness_factor", "1", f"factor on all stiffnesses of {name}", 1.0)
+            found.append((told, _stiffened(plan, e, hinged)))
         if c.damping[e]:
             told = Variable(f"{name}.damping", "N.m.s/rad", f"viscous damping of {name}", float(c.damping[e]))
             found.append((told, (Slope("plan.constants", DAMPER * count + e, 1.0),)))
     return found
+
+
+def _stiffened(plan: Plan, e: int, hinged: IntArray) -> tuple[Slope, ...]:
+    """The stiffnesses of a connection, which stages, gaps and stops change."""
+    constants, values = plan.constants, plan.hinges.values
+    found = [(("plan.constants", SPRING * constants.shape[1] + e), constants[SPRING, e])]
+    found += [(("plan.hinges.values", CHANGE * values.shape[1] + int(i)), values[CHANGE, i]) for i in hinged]
+    return tuple(Slope(*place, float(value)) for place, value in found if value)
 
 
 def inertia_slopes(plan: Plan, row: Array) -> tuple[Slope, ...]:
