@@ -33,8 +33,9 @@ def test_show_tells_channels_units_rates_and_ranges(torsional: Run, file: str) -
     assert (told.code, told.err) == (0, "")
     title, heading, _, first, *_ = told.out.splitlines()
     assert title == "rig.mf4: MDF 4.10, 4 channels, begun 2026-11-23T05:42:11.250000"
-    assert heading.split() == ["channel", "unit", "samples", "rate", "from", "to", "least", "most", "missing", "group"]
-    assert first.split()[:9] == ["n_mot", "1/min", "400", "2000", "Hz", "0", "s", "0.1995", "s"]
+    assert heading.split() == ["channel", "unit", "samples", "rate", "[Hz]", "over", "[s]", "range"]
+    assert first.split() == ["n_mot", "1/min", "400", "2000", "0", "to", "0.2", "1497", "to", "1503"]
+    assert "399/400" in told.out and "pulses" in told.out and "uneven" in told.out
 
 
 def test_show_as_json(torsional: Run, file: str) -> None:

@@ -100,33 +100,21 @@ def _told(values: xr.DataArray, name: str, whole: xr.DataArray) -> dict[str, obj
 def _table(data: xr.Dataset, rows: Sequence[dict[str, object]]) -> Table:
     begun = f", begun {data.attrs['start']}" if data.attrs.get("start") else ""
     title = f"{data.attrs.get('source', '')}: {data.attrs.get('format', '')}, {len(rows)} channels{begun}"
-    names = ("channel", "unit", "samples", "rate", "from", "to", "least", "most", "missing", "group")
-    columns = [Column(name, "number" if name in names[2:9] else "") for name in names]
+    names = ("channel", "unit", "samples", "rate [Hz]", "over [s]", "range")
+    columns = [Column(name, "number" if name in names[2:6] else "") for name in names]
     return Table(title, columns, [_cells(row) for row in rows])
 
 
-def _cells(row: dict[str, object]) -> list[object]:
-    rate = row["rate"]
-    axis = f" {row['axis_units']}" if row["axis_units"] else ""
-    span = [f"{row[key]:.6g}{axis}" for key in ("first", "last")]
-    told = (
-        str(row["kind"]).replace("signal", "uneven")
-        if rate is None
-        else f"{rate:.6g} Hz"
-        if axis == " s"
-        else f"{rate:.6g} per{axis}"
-    )
-    extremes = ["-" if row[key] is None else f"{row[key]:.5g}" for key in ("least", "most")]
-    return [
-        row["channel"],
-        row["units"],
-        str(row["samples"]),
-        told,
-        *span,
-        *extremes,
-        str(row["missing"]),
-        row["group"],
-    ]
+def _cells(row: dict[str, Any]) -> list[object]:
+    """A line of the table; what runs along no time has its own unit behind it."""
+    unit = "" if row["axis_units"] == "s" else f" {row['axis_units']}"
+    held = row["samples"] - row["missing"]
+    samples = f"{held}/{row['samples']}" if row["missing"] else str(held)
+    uneven = "uneven" if row["kind"] == "signal" else row["kind"]
+    rate = uneven if row["rate"] is None else f"{row['rate']:.6g}{f' per{unit}' if unit else ''}"
+    over = f"{row['first']:.3g} to {row['last']:.3g}{unit}"
+    extremes = f"{row['least']:.4g} to {row['most']:.4g}" if held and row["kind"] == "signal" else "-"
+    return [row["channel"], row["units"], samples, rate, over, extremes]
 
 
 def _convert(

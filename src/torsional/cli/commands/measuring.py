@@ -27,7 +27,8 @@ def show(
 ) -> Job:
     """What a measurement file holds.
 
-    Tells channels with units, samples, rate, range and group; with a mapping what they are of the model.
+    Tells channels with units, samples, rate and range, --json their groups and comments too; with a mapping what they
+    are of the model.
     """
     return job("measurement", what="show", **locals())
 
