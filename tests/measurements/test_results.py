@@ -85,3 +85,11 @@ def test_tracked_orders_of_a_run_down(tmp_path: Path) -> None:
     np.testing.assert_allclose(back.speed, found.speed.values[::-1] / RPM, rtol=1e-14)
     np.testing.assert_array_equal(back["M order 3"], found.M.sel(order=3.0).values[::-1])
     assert back["M order 3"].attrs["units"] == "Nm"
+
+
+def test_a_dataset_by_hand_keeps_the_channels_of_every_raster(tmp_path: Path) -> None:
+    """Nothing but names tells such a Dataset from a result."""
+    data = xr.Dataset({"n": ("time", [1.0, 2.0, 3.0]), "M": ("time_2", [4.0, 5.0])})
+    data = data.assign_coords(time=[0.0, 0.1, 0.2], time_2=[0.0, 0.15])
+    again = read_measurement(write_measurement(data, tmp_path / "by_hand.csv"))
+    assert again.n.values.tolist() == [1.0, 2.0, 3.0] and again.M.values.tolist() == [4.0, 5.0]

@@ -65,9 +65,17 @@ def _along(data: xr.Dataset) -> dict[Hashable, xr.DataArray]:
 
 
 def _axis(values: xr.DataArray) -> str:
-    """The dimension that a variable runs along; of a measurement's own rasters, its only one."""
+    """The dimension that a variable runs along; of a measurement's own rasters, ``time_2`` and so on, its only one."""
     named = next((axis for axis in AXES if axis in values.dims), "")
-    return named or (str(values.dims[0]) if len(values.dims) == 1 and "sampling" in _attrs(values) else "")
+    if named or len(values.dims) != 1:
+        return named
+    own = str(values.dims[0])
+    return own if _kind(own) in AXES or "sampling" in _attrs(values) else ""
+
+
+def _kind(axis: str) -> str:
+    """What a numbered axis is: ``time`` of ``time_2``."""
+    return axis.rstrip("0123456789").rstrip("_")
 
 
 def _attrs(values: xr.DataArray) -> dict[str, object]:
@@ -77,8 +85,7 @@ def _attrs(values: xr.DataArray) -> dict[str, object]:
 
 def _raster(data: xr.Dataset, axis: str) -> Raster:
     values = np.asarray(data[axis].values, dtype=float)
-    name = "time" if axis.startswith("time") else axis.rstrip("0123456789").rstrip("_")
-    return Raster(values, name, str(data[axis].attrs.get("units", "")))
+    return Raster(values, _kind(axis), str(data[axis].attrs.get("units", "")))
 
 
 def _refuse_many(values: xr.DataArray, axis: str, name: str, before: int) -> None:
