@@ -87,7 +87,7 @@ def test_other_files_are_refused(tmp_path: Path, text: str) -> None:
 
 
 def test_what_is_no_assembly_is_refused() -> None:
-    with pytest.raises(ModelError, match=r"no assembly of openTorsion; found dict"):
+    with pytest.raises(ModelError, match=r"from_opentorsion\(assembly\): an Assembly is wanted; found a dict"):
         tv.from_opentorsion({})
 
 

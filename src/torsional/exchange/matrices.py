@@ -69,6 +69,7 @@ def matrices(
     return Matrices(*head, system.M, system.C, stiffness, system.H, system.T)
 
 
+@checked
 def write_matrices(told: Matrices, path: str | os.PathLike[str]) -> None:
     """Write matrices as MAT (version 5, for MATLAB, Octave, SciPy) or CSV, as the ending of the file says.
 

@@ -10,32 +10,56 @@ import os
 from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
+from torsional.arguments import checked
 from torsional.components import Component, Damper, GearPair, Inertia, PlanetSpin, Shaft
 from torsional.errors import ModelError
 from torsional.files.opening import TABLE_BYTES, read_text, shown
 from torsional.model import Landmarks, Model
 
 
-def from_opentorsion(assembly: Any, name: str = "openTorsion assembly") -> Model:
+class Assembly(Protocol):
+    """What an `opentorsion.Assembly` has."""
+
+    @property
+    def shaft_elements(self) -> Any:
+        """Its shafts."""
+
+    @property
+    def disk_elements(self) -> Any:
+        """Its disks."""
+
+    @property
+    def gear_elements(self) -> Any:
+        """Its rigid gears."""
+
+    @property
+    def elastic_gear_elements(self) -> Any:
+        """Its elastic gears."""
+
+
+@checked
+def from_opentorsion(assembly: Assembly, name: str = "openTorsion assembly") -> Model:
     """The model of an `opentorsion.Assembly`: shafts, disks, gears, elastic gears.
 
     A shaft's own inertia is J/6 [[2, 1], [1, 2]], as there: three squares.  The stiffness of a disk to the ground is
     left out, as openTorsion's matrices (0.3.2) leave it out; a disk's damping acts to the ground.
     Raises ModelError for what is no assembly, and for stiffnesses and inertias that cannot be.
     """
-    groups = ("shaft_elements", "disk_elements", "gear_elements", "elastic_gear_elements")
-    if not all(hasattr(assembly, group) for group in groups):
-        found, remedy = type(assembly).__name__, "give an opentorsion.Assembly"
-        raise ModelError("this is no assembly of openTorsion", found=found, remedy=remedy)
-    shafts, disks, gears, elastic = (list(getattr(assembly, group) or ()) for group in groups)
-    listed = [*_shafts(shafts), *_disks(disks), *_gears(gears), *_elastic(elastic)]
+    gears, elastic = assembly.gear_elements or (), assembly.elastic_gear_elements or ()
+    listed = [
+        *_shafts(assembly.shaft_elements or ()),
+        *_disks(assembly.disk_elements or ()),
+        *_gears(gears),
+        *_elastic(elastic),
+    ]
     model = Model(name, dict(_numbered(listed)), Landmarks())
     _ = model.powertrain()
     return model
 
 
+@checked
 def read_tors(path: str | os.PathLike[str]) -> Model:
     """The model of a file in openTorsion's own form, TORS (JSON); openTorsion itself reads it.
 
