@@ -47,6 +47,22 @@ def dozing(path: str) -> None:
     time.sleep(4.0 if path.endswith("short") else 60.0)
 
 
+def killed() -> None:
+    """What ends the process that reads it."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+class Deadly:
+    """Ends the process that is given it, before it has read what lies behind."""
+
+    def __reduce__(self) -> tuple[object, tuple[()]]:
+        return killed, ()
+
+
+def unready(*_: object) -> None:
+    """Never reached."""
+
+
 SCRIPT = """
 import sys
 from tests.studies.test_crew import dozing, ready
@@ -60,6 +76,14 @@ if __name__ == "__main__":
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal there")
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system kills in another way")
+def test_a_process_that_dies_while_it_begins_costs_its_task_alone() -> None:
+    """What it is given is more than a pipe holds, so that whoever waits for it to be read would wait for ever."""
+    with Crew(threads, unready, (Deadly(), bytes(1_000_000)), 2) as crew:
+        found = dict(crew.results([1, 2, 3]))
+    assert found == {number: Lost(NOWHERE, -signal.SIGKILL) for number in (1, 2, 3)}
+
+
 def test_a_process_that_dies_costs_its_task_alone() -> None:
     with Crew(ended, ready, (), 2) as crew:
         found = dict(crew.results(range(6)))

@@ -6,6 +6,7 @@ What a process dies of (memory, a defect of compiled code, somebody's signal) co
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -44,11 +45,14 @@ class _Member(Generic[Task]):
         self.pipe, theirs = context.Pipe()
         self.mark = context.RawValue("q", NOWHERE)
         self.process: SpawnProcess = context.Process(
-            target=_working, args=(theirs, self.mark, work, prepare, given), daemon=True
+            target=_working, args=(theirs, self.mark, work, prepare), daemon=True
         )
         with inherited():
             self.process.start()
         theirs.close()
+        # not as arguments: one that dies before it has read many of them would never let `start` return
+        with contextlib.suppress(OSError):
+            self.pipe.send(given)
         self.task: Task | None = None
         self.busy = False
 
@@ -56,6 +60,12 @@ class _Member(Generic[Task]):
         """Raises OSError where the process has died."""
         self.task, self.mark.value = task, NOWHERE
         self.pipe.send(task)
+        self.busy = True
+
+    def begin(self, task: Task) -> None:
+        """Its first task; of a process that has died already the pipe tells it."""
+        with contextlib.suppress(OSError):
+            self.give(task)
         self.busy = True
 
 
@@ -115,7 +125,7 @@ class Crew(Generic[Task, Result]):
             except OSError:
                 self._members.remove(member)
         self._members.append(_Member(self._work, self._prepare, self._given))
-        self._members[-1].give(task)
+        self._members[-1].begin(task)
 
     def _received(self, member: _Member[Task]) -> tuple[Task, Result | Lost]:
         task: Any = member.task
@@ -156,28 +166,23 @@ def _working(
     mark: Any,
     work: Callable[[Any], Any],
     prepare: Callable[..., None],
-    given: tuple[Any, ...],
 ) -> None:
-    """What a process does: tasks until the pipe ends."""
+    """What a process does: tasks until the pipe ends, or those who asked have gone."""
     global _MARK
     _MARK = mark
     prepared = False
-    while True:
-        try:
+    with contextlib.suppress(EOFError, OSError):
+        given = pipe.recv()
+        while True:
             task = pipe.recv()
-        except (EOFError, OSError):  # those who asked have gone
-            return
-        try:
-            if not prepared:
-                prepare(*given)
-                prepared = True
-            told = True, work(task)
-        except Exception as error:
-            told = False, error
-        try:
+            try:
+                if not prepared:
+                    prepare(*given)
+                    prepared = True
+                told = True, work(task)
+            except Exception as error:
+                told = False, error
             pipe.send(told)
-        except OSError:
-            return
 
 
 @contextmanager
