@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.measurements.run_ups import RunUp
 
 import torsional as tv
 from torsional.errors import ModelError
@@ -124,3 +125,13 @@ def test_orders_of_a_result(tmp_path: Path) -> None:
     ):
         with pytest.raises(ModelError, match=told):
             curves_of_result(path, place, kind, selected)  # type: ignore[arg-type]
+
+
+def test_measured_orders_of_a_shaft_are_curves_of_its_node(tmp_path: Path) -> None:
+    """What order tracking saves is read as what analyses save: 0.5° at order 3, 0.05 rad ahead."""
+    run = RunUp(70.0, 10.0, 8.0, {3.0: 0.5 * np.pi / 180 * np.exp(0.05j)})
+    crank = tv.shaft_from_pulses(run.pulses(60, 2), 60, missing=2, index_angle=2 * np.pi / 60, name="secondary")
+    tracked = tv.track_orders(None, tv.mean_rotation(crank), [3.0], shafts={"secondary": crank})
+    found = curves_of_result(tv.save_results(tracked, tmp_path / "tracked.nc"), "secondary", "angle")
+    assert found.order.values.tolist() == [3.0] and found.speed.size > 20
+    assert np.degrees(np.abs(found.values)) == pytest.approx(0.5, rel=0.01)

@@ -115,7 +115,7 @@ def findings(data: xr.Dataset) -> Iterator[str]:
     """What an engineer reads off the fronts."""
     best = {str(c): _best(data.sel(concept=c)) for c in data.concept.values if data.low_speed.sel(concept=c).count()}
     for missing in sorted({*map(str, data.concept.values)} - {*best}):
-        yield f"{missing}: no design keeps all limits at this inertia."
+        yield f"{missing}: none of the designs searched keeps all limits at this inertia; search more of them."
     for concept, (low, high, at_low) in best.items():
         yield (
             f"{concept}: down to {low:.3g} rad/s² at low speed, where high speed has {at_low:.3g}, and down to "
