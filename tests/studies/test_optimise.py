@@ -23,6 +23,7 @@ from torsional.studies.optimise import Limit, Method, optimise
 from torsional.studies.optimise.front import front, knee
 from torsional.studies.optimise.gradients import Around, points_of
 from torsional.studies.optimise.lines import Built
+from torsional.studies.optimise.optimise import optimised
 from torsional.studies.optimise.plan import load_optimisation
 from torsional.studies.optimise.presets import PRESETS, absorber_task, criteria_of, preset, stiff_tuned
 from torsional.studies.optimise.refine import Refinement
@@ -100,6 +101,17 @@ def test_one_objective_and_three() -> None:
     assert best is not None and float(best.third) == pytest.approx(0.95, abs=0.02)
     three = optimise(made, BOX, asked, ["first", "second", "third"], method=Method(20, 10), between=-1)
     assert role(three, "best third") is not None and role(three, "knee") is not None
+
+
+@pytest.mark.full
+def test_gradients_find_the_way_into_limits_that_a_short_search_misses() -> None:
+    """Ends of the front as a search of 3000 designs and its refinement gave them: 118.09 and 31.06 rad/s²."""
+    task = preset("best-pendulum", TRUCKS, {"space": "2.5 kgm²"}).task
+    found = optimised(task, Method(16, 3), 0)
+    within = found.within.values
+    assert not within[: 1 + 16 * 3].any() and within[1 + 16 * 3 :].all()
+    assert float(found.low_speed[within].min()) == pytest.approx(118.09, rel=1e-3)
+    assert float(found.high_speed[within].min()) == pytest.approx(31.06, rel=1e-3)
 
 
 def test_pendulums_are_tuned_above_their_order_and_keep_to_a_mass() -> None:

@@ -54,7 +54,7 @@ def test_the_picture_shows_every_front_and_the_designs_as_they_are() -> None:
 
 @pytest.mark.full
 def test_all_concepts_keep_the_same_space() -> None:
-    found = tools()["recommendation"](Trucks.shipped(), population=40, generations=8, between=0, processes=2)
+    found = tools()["recommendation"](Trucks.shipped(), population=16, generations=4, between=0, processes=2)
     assert found.concept.values.tolist() == list(PRESETS)
     assert float(found.space.max()) <= 2.5 and float(found.low_speed.min()) > 0
     best = found.low_speed.min("point")

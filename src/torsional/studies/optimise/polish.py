@@ -24,11 +24,15 @@ STARTS, APART = 4, 0.3
 
 def refined(task: Task, method: Method, between: int, kept: Generations) -> str:
     """Refine the front of what was searched, the designs found being one more generation; why none is, if none."""
-    shares, goals = feasible(task, kept)
-    if not len(goals):
-        return "no design keeps all limits"
-    polish = Polish(task, kept, shares, goals, len(goals))
+    shares, goals, beyond = known(task, kept)
+    good = beyond == 0
+    polish = Polish(task, kept, shares[good], goals[good])
+    begun = len(polish.goals)
     try:
+        if not begun:
+            polish.into_limits(shares, beyond)
+        if not len(polish.goals):
+            return "no design keeps all limits"
         polish.ends()
         if len(task.objectives) == 2:
             polish.between(between)
@@ -36,22 +40,24 @@ def refined(task: Task, method: Method, between: int, kept: Generations) -> str:
             polish.knee()
     except ModelError as error:
         return error.problem if error.where == "refine" else str(error)
-    found = polish.shares[len(shares) :]
+    found = polish.shares[begun:]
     if not len(found):
         return "gradients found nothing better"
     kept.answers(method.generations + 1, task.columns(found))
     return ""
 
 
-def feasible(task: Task, kept: Generations) -> tuple[Array, Array]:
-    """Shares and objectives, to be made small, of the searched designs that keep all limits."""
-    shares, goals = [], []
+def known(task: Task, kept: Generations) -> tuple[Array, Array, Array]:
+    """Shares and objectives, to be made small, of the searched designs that have an answer, and how far each is beyond
+    limits in all, 0 where it keeps them."""
+    shares, goals, over = [], [], []
     for columns, answers in kept.found[task.nominal_values is not None :]:
         every, beyond = scored(task, answers)
-        good = (beyond <= 0).all(axis=1)
-        shares.append(task.shares(columns)[good])
-        goals.append(every[good])
-    return np.concatenate(shares), np.concatenate(goals)
+        told = answers.answered
+        shares.append(task.shares(columns)[told])
+        goals.append(every[told])
+        over.append(np.maximum(beyond[told], 0.0).sum(axis=1))
+    return np.concatenate(shares), np.concatenate(goals), np.concatenate(over)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,19 +80,25 @@ class Start:
         """Refine it: where gradients led, and the objectives there."""
         refinement = Refinement(replace(at.task, limits=self.limits), self.weights, at.batch)
         found = refinement.refined(self.shares)
-        at.store.put(self.number, {"start": self.key, "shares": found, "goals": refinement.goals(found)})
+        told = {"goals": refinement.goals(found), "within": np.array(refinement.within(found))}
+        at.store.put(self.number, {"start": self.key, "shares": found, **told})
 
 
 @dataclass
 class Polish:
-    """Designs by their ``shares`` and ``goals``, those from place ``searched`` on being refined ones."""
+    """Designs that keep all limits, by their ``shares`` and ``goals``."""
 
     task: Task
     kept: Generations
     shares: Array
     goals: Array
-    searched: int
     number: int = KEPT
+
+    def into_limits(self, shares: Array, beyond: Array) -> None:
+        """Where the search found none that keeps all limits, from those that miss them by least."""
+        first = self.task.objectives[0]
+        starts = [self._from(shares[place], {first: 1.0}, {}) for place in unlike(shares, beyond, STARTS)]
+        self._refine(starts)
 
     def ends(self) -> None:
         """Each objective alone, from designs that are best and unlike each other: there may be more than one valley."""
@@ -119,24 +131,27 @@ class Polish:
         return front(self.goals)
 
     def _start(self, place: int, weights: Mapping[str, float], narrower: Mapping[str, Limit]) -> Start:
+        return self._from(self.shares[place], weights, narrower)
+
+    def _from(self, shares: Array, weights: Mapping[str, float], narrower: Mapping[str, Limit]) -> Start:
         own = self.task.limits
         limits = {**own, **{name: _both(limit, own.get(name)) for name, limit in narrower.items()}}
         self.number += 1
-        return Start(self.number, self.shares[place], weights, limits)
+        return Start(self.number, shares, weights, limits)
 
     def _refine(self, starts: Sequence[Start]) -> None:
         """Refine designs side by side, and take up those that were made better."""
         for _, told in self.kept.crew.results([start for start in starts if self._known(start) is None]):
             if isinstance(told, Lost):
                 raise ModelError("a process died while it refined a design", where="refine")
-        found = [(start, known) for start in starts if (known := self._known(start)) is not None]
-        better = [known for start, known in found if not np.array_equal(known["shares"], start.shares)]
-        self.shares = np.vstack([self.shares, *(known["shares"] for known in better)])
-        self.goals = np.vstack([self.goals, *(known["goals"] for known in better)])
+        found = [(start, each) for start in starts if (each := self._known(start)) is not None]
+        better = [each for start, each in found if each["within"] and not np.array_equal(each["shares"], start.shares)]
+        self.shares = np.vstack([self.shares, *(each["shares"] for each in better)])
+        self.goals = np.vstack([self.goals, *(each["goals"] for each in better)])
 
     def _known(self, start: Start) -> dict[str, np.ndarray] | None:
-        known = self.kept.store.get(start.number)
-        return known if known is not None and np.array_equal(known["start"], start.key) else None
+        told = self.kept.store.get(start.number)
+        return told if told is not None and np.array_equal(told["start"], start.key) else None
 
 
 def unlike(shares: Array, goal: Array, count: int) -> list[int]:

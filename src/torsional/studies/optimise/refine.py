@@ -33,6 +33,8 @@ NEAR, GEARS = 0.95, 2
 ROUNDS, ITERATIONS = 6, 5
 REACH = 0.25
 """How far shares of the axes may go in one round, after which it is looked anew which points matter."""
+BEYOND = 1e30
+"""More than any sum of objectives."""
 ENOUGH = 1e-3
 """A round that makes the aim smaller by less, over itself, is the last."""
 
@@ -105,7 +107,7 @@ class Refinement:
             raise ModelError("no objective is a largest value of one order of a linear analysis", where="refine")
 
     def refined(self, start: Array) -> Array:
-        """Shares of the axes that are no worse than those of ``start``."""
+        """Shares of the axes that are no worse than those of ``start``, or not as far beyond limits."""
         best = found = start
         least, reach = self._aim(start), REACH
         for _ in range(ROUNDS):
@@ -123,16 +125,21 @@ class Refinement:
         return best
 
     def _aim(self, shares: Array) -> float:
-        """The weighted objectives of a design as they are; infinite beyond a limit or without an answer."""
+        """The weighted objectives of a design as they are; beyond limits more than any, the more the farther; infinite
+        without an answer."""
         try:
             found = self._asked(self.task.wanted, [self._values(shares)])[0]
         except ModelError:
             return float("inf")
-        for name, limit in self.task.limits.items():
-            if not float(limit.beyond(np.array(found[name]))) <= 0:
-                return float("inf")
+        over = sum(max(0.0, float(limit.beyond(np.array(found[n])))) for n, limit in self.task.limits.items())
         told = [w * self.task.sign(name) * found[name] for name, w in self.weights.items()]
-        return float(sum(told)) if np.isfinite(told).all() else float("inf")
+        if not np.isfinite([over, *told]).all():
+            return float("inf")
+        return BEYOND * (1.0 + over) if over > 0 else float(sum(told))
+
+    def within(self, shares: Array) -> bool:
+        """Whether a design has an answer that keeps all limits."""
+        return self._aim(shares) < BEYOND
 
     def goals(self, shares: Array) -> Array:
         """The objectives of the task, to be made small, of a design."""
