@@ -131,6 +131,26 @@ def test_a_signal_in_time(tmp_path: Path) -> None:
     assert found.estimate.values[0] == pytest.approx(30.0, rel=1e-3)
 
 
+def test_a_channel_of_a_measurement_is_a_signal(tmp_path: Path) -> None:
+    """A speed in rpm that comes 0.1 s late, of a file that a logger writes."""
+    time = np.arange(0.0, 1.0, 1e-3)
+    speed = 1000.0 + 20.0 * np.sin(30.0 * time)
+    data = xr.Dataset({"n_in": ("time", speed, {"units": "1/min"})}, {"time": time})
+    tv.write_measurement(data, tmp_path / "run.uff")
+    mapping = "torsional_mapping: 1\nchannels: {n_in: {quantity: angular_velocity, node: gearbox_input, delay: 0.1 s}}"
+    (tmp_path / "map.yaml").write_text(mapping, encoding="utf-8")
+    (tmp_path / "tip.yaml").write_text(TIP, encoding="utf-8")
+    plan = HISTORY.replace("MODEL", str(EXAMPLES / "truck_smf.yaml")).replace("run.csv", "run.uff, mapping: map.yaml")
+    (tmp_path / "plan.yaml").write_text(plan, encoding="utf-8")
+    (source,) = load_identification(tmp_path / "plan.yaml").sources
+    point, shown = source.points[0], source.shown(0, source.points[0].values)
+    assert shown.axis[0] == 0.0 and shown.quantity == "angular_velocity"
+    assert point.values == pytest.approx(speed[100:] * tv.RPM)
+    (tmp_path / "plan.yaml").write_text(plan.replace("place: gearbox_input", "place: flywheel"), encoding="utf-8")
+    with pytest.raises(ModelError, match="the mapping brings no signal to this place"):
+        load_identification(tmp_path / "plan.yaml")
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [

@@ -15,8 +15,9 @@ from torsional.files.scenario_blocks import GearName
 from torsional.files.scenario_schema import KINDS
 from torsional.files.schema.fields import Block, Node, Quantity
 from torsional.model import Model
+from torsional.numerics.arrays import Array
 from torsional.studies.identification.sources import History, Loops, Orders, ends_of
-from torsional.studies.order_curves import CARRIED, NODAL, Amplitude, curves_of_result, curves_of_table
+from torsional.studies.order_curves import BETWEEN, CARRIED, NODAL, Amplitude, curves_of_result, curves_of_table
 from torsional.studies.records import loops_of_file, white_noise
 from torsional.tables import cells, named, parse_table
 from torsional.units import quoted
@@ -89,23 +90,19 @@ class OrdersBlock(Seen):
 
 
 class HistoryBlock(Seen):
-    """A signal in time: columns time and one that names the quantity."""
+    """A signal in time: columns time and one that names the quantity; with a mapping, a channel of a measurement."""
 
     kind: Literal["history"]
     name: str = Field("", description="default: the file's name")
     place: Node = Field(description="node or connection")
-    scenario: str = Field(description="name of a kind, or of a file beside the plan")
+    mapping: str = Field("", description="mapping file beside the plan, of a measurement of any format")
+    quantity: Literal["", *CARRIED] = Field("", description="of a measurement")  # type: ignore[valid-type]
+    scenario: str = Field(description="name of a kind, or of a file beside the plan; it begins at time zero")
     noise: float | None = Field(None, gt=0, description="standard deviation in SI; default: that of white noise in it")
 
     def source(self, model: Model, folder: Path) -> History:
         """The signal, with the scenario it was measured in."""
-        text = read_text(folder / self.file, TABLE_BYTES)
-        heads = [named(cell)[0] for cell in cells(text).header]
-        quantity = next((head for head in heads if head in CARRIED), "")
-        if not quantity:
-            raise ModelError("one column must name the quantity", where="file", allowed=", ".join(CARRIED))
-        table = parse_table(text, {"time": "time", quantity: quantity}, increasing="time")
-        times, values = np.array(table["time"]), np.array(table[quantity])
+        times, values, quantity = self._mapped(model, folder) if self.mapping else self._table(folder)
         source = self.scenario if self.scenario in KINDS else str(folder / self.scenario)
         noise = self.noise or white_noise(times, values)
         if not noise > 0:
@@ -113,6 +110,30 @@ class HistoryBlock(Seen):
         name = self.name or Path(self.file).stem
         weight = self.weights.get(name, 1.0)
         return History(name, times, values, self.place, quantity, load_scenario(source), noise, weight)
+
+    def _table(self, folder: Path) -> tuple[Array, Array, str]:
+        text = read_text(folder / self.file, TABLE_BYTES)
+        heads = [named(cell)[0] for cell in cells(text).header]
+        quantity = next((head for head in heads if head in CARRIED), "")
+        if not quantity:
+            raise ModelError("one column must name the quantity", where="file", allowed=", ".join(CARRIED))
+        table = parse_table(text, {"time": "time", quantity: quantity}, increasing="time")
+        return np.array(table["time"]), np.array(table[quantity]), quantity
+
+    def _mapped(self, model: Model, folder: Path) -> tuple[Array, Array, str]:
+        from torsional.measurements import load_mapping, mapped, read_measurement
+
+        data = mapped(read_measurement(folder / self.file), load_mapping(folder / self.mapping), model)
+        there = {name: BETWEEN.get(name, name) for name in (self.quantity and [self.quantity]) or CARRIED}
+        for quantity, name in there.items():
+            dim = "node" if quantity in NODAL else "element"
+            if name in data and self.place in data[dim].values:
+                own = data[name].sel({dim: self.place})
+                kept = (own.time.values >= 0.0) & np.isfinite(own.values)
+                if kept.any():
+                    return own.time.values[kept], own.values[kept], quantity
+        wanted = self.quantity or "signal"
+        raise ModelError(f"the mapping brings no {wanted} to this place", where="place", found=quoted(self.place))
 
 
 def _refuse_place(model: Model, place: str, quantity: str, gear: str) -> None:
