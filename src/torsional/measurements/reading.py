@@ -6,6 +6,8 @@ import contextlib
 import io
 import logging
 import os
+import sys
+import traceback
 import warnings
 from collections.abc import Iterator
 from importlib import import_module
@@ -69,11 +71,23 @@ def _form(file: Path) -> Format:
 @contextlib.contextmanager
 def silenced() -> Iterator[None]:
     """What libraries that read and write files warn of, log and print is not the user's business: errors are."""
-    before = logging.root.manager.disable
+    before, hook = logging.root.manager.disable, sys.unraisablehook
     logging.disable(logging.CRITICAL)
+    sys.unraisablehook = _unheard
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
             yield
+    except Exception as error:
+        told: BaseException | None = error
+        while told is not None:  # what the libraries have half made goes here, where nobody hears it fail to
+            traceback.clear_frames(told.__traceback__)
+            told = told.__context__
+        raise
     finally:
+        sys.unraisablehook = hook
         logging.disable(before)
+
+
+def _unheard(_: object) -> None:
+    """What cannot be raised is not told."""
