@@ -11,7 +11,7 @@ import numpy as np
 
 from torsional import __version__, laws
 from torsional.cli import map as maps
-from torsional.cli import modes, respond
+from torsional.cli import respond
 from torsional.cli.answers import print_json
 from torsional.cli.documents import amount, json_text
 from torsional.cli.progress import progress
@@ -24,6 +24,7 @@ from torsional.model import Model
 from torsional.numerics.callbacks import address_of
 from torsional.numerics.compiling import WATCH
 from torsional.powertrain import Powertrain
+from torsional.quantities.modes import modes_of
 from torsional.solvers.campbell import campbell
 from torsional.solvers.hysteresis import hysteresis
 from torsional.solvers.map import response_map
@@ -67,7 +68,7 @@ def steps(model: Model) -> Iterator[Step]:
     """What the commands do, on a few points each; the kernels are the same for more."""
     gear, peak = model.top_gear, model.full_load_peak()
     speeds, torques = model.speeds(3), model.torques(2)
-    yield "modes", lambda: modes.modes_of(model, gear, peak, float(speeds[0]), 3.0)
+    yield "modes", lambda: modes_of(model, gear, peak, float(speeds[0]), 3.0)
     yield "campbell", lambda: campbell(model, peak, [gear])
     nodes, elements = [model.landmarks.crankshaft], [*model.landmarks.springs]
     yield "respond", lambda: respond.response(model, gear, speeds, torques[[1, 1, 0]], HALF_ORDERS, nodes, elements)

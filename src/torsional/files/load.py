@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +45,7 @@ def load_model(path: str | os.PathLike[str]) -> Model:
     13000.0
     """
     tree = read_tree(path)
-    return _model(_completed(tree, path))
+    return model_from_tree(_completed(tree, path))
 
 
 def model_from_document(
@@ -58,7 +58,7 @@ def model_from_document(
     0.2
     """
     tree = Tree(dict(document), {}, file)
-    return _model(tree if folder is None else _completed(tree, Path(folder) / "model.yaml"))
+    return model_from_tree(tree if folder is None else _completed(tree, Path(folder) / "model.yaml"))
 
 
 def validated(tree: Tree) -> ModelFile:
@@ -77,10 +77,11 @@ def validated(tree: Tree) -> ModelFile:
 def rebuilt(model: Model, document: Mapping[str, Any]) -> Model:
     """The model of a changed document; an engine block that is as before keeps its engine and all it has worked out."""
     same = document.get("engine") == model.document.get("engine")
-    return _model(Tree(dict(document)), model.engine if same else None)
+    return model_from_tree(Tree(dict(document)), model.engine if same else None)
 
 
-def _model(tree: Tree, motor: Engine | None = None) -> Model:
+def model_from_tree(tree: Tree, motor: Engine | None = None) -> Model:
+    """The model of a parsed file that stands on its own; with its ``motor`` where that is known."""
     file = validated(tree)
     try:
         return _built(file, tree.data, motor)
@@ -203,30 +204,55 @@ def _refuse_giants(file: ModelFile) -> None:
 
 
 def _completed(tree: Tree, path: str | os.PathLike[str]) -> Tree:
-    """The tree with its files; what is wrong with the tree itself is told before what is wrong with a file."""
+    """The tree with its files, which lie beside the file ``path``."""
+    return with_contents(tree, lambda name: read_text(resolve_reference(path, name), TABLE_BYTES))
+
+
+def with_contents(tree: Tree, read: Callable[[str], str]) -> Tree:
+    """The tree with the content of every file it names beside the name, so that a model stands on its own.
+
+    What is wrong with the tree itself is told before what is wrong with a file.
+    """
     try:
-        return Tree(_with_files(tree, path), tree.lines, tree.file)
+        return Tree(_with_files(tree, read), tree.lines, tree.file)
     except ModelError:
         validated(tree)
         raise
 
 
-def _with_files(tree: Tree, path: str | os.PathLike[str]) -> dict[str, Any]:
-    """The data with the content of every file it names beside the name, so that a model stands on its own."""
-    block = tree.data.get("engine")
-    if not isinstance(block, dict):
+def _with_files(tree: Tree, read: Callable[[str], str]) -> dict[str, Any]:
+    named = dict(_named_files(tree.data))
+    if not named:
         return tree.data
-    engine_block = {**block}
-    for key in ("full_load", "pressure_trace"):
-        value = {"file": block[key]} if isinstance(block.get(key), str) else block.get(key)
-        if isinstance(value, dict) and isinstance(value.get("file"), str) and "text" not in value:
-            engine_block[key] = {**value, "text": _content(value["file"], path, f"engine.{key}", tree)}
+    engine_block = {**tree.data["engine"]}
+    for key, value in named.items():
+        engine_block[key] = {**value, "text": _content(value["file"], read, f"engine.{key}", tree)}
     return {**tree.data, "engine": engine_block}
 
 
-def _content(reference: str, path: str | os.PathLike[str], key: str, tree: Tree) -> str:
+def _named_files(document: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The keys of the engine block that name a file whose content does not stand beside, with their blocks."""
+    block = document.get("engine")
+    if not isinstance(block, dict):
+        return
+    for key in ("full_load", "pressure_trace"):
+        value = {"file": block[key]} if isinstance(block.get(key), str) else block.get(key)
+        if isinstance(value, dict) and isinstance(value.get("file"), str) and "text" not in value:
+            yield key, value
+
+
+def files_named(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """The names of the files that a parsed model file wants beside it.
+
+    >>> files_named({"engine": {"full_load": "curve.csv"}})
+    ('curve.csv',)
+    """
+    return tuple(dict.fromkeys(value["file"] for _, value in _named_files(document)))
+
+
+def _content(reference: str, read: Callable[[str], str], key: str, tree: Tree) -> str:
     try:
-        return read_text(resolve_reference(path, reference), TABLE_BYTES)
+        return read(reference)
     except ModelError as error:
         found = error.found or quoted(reference)
         told = {"found": found, "allowed": error.allowed, "remedy": error.remedy}

@@ -175,13 +175,14 @@ def named_modes(modes: xr.Dataset, groups: Mapping[str, Sequence[str]]) -> list[
     ['clutch mode']
     """
     dominant = dominant_element(modes).values
+    share = modes.elastic_share.transpose("mode", "element").values
+    column = {str(name): i for i, name in enumerate(modes.element.values)}
+    together = {name: share[:, [column[part] for part in parts]].sum(axis=1) for name, parts in groups.items() if parts}
     names = []
     for mode, element in enumerate(dominant):
-        share = modes.elastic_share.isel(mode=mode)
         known = [name for name, members in groups.items() if element in members]
-        together = {name: float(share.sel(element=list(members)).sum()) for name, members in groups.items() if members}
-        largest = max(together, key=lambda name: together[name], default="")
-        if element and largest and together[largest] > float(share.max()):
+        largest = max(together, key=lambda name: together[name][mode], default="")
+        if element and largest and together[largest][mode] > share[mode].max():
             known = [largest]
         names.append(known[0] if known else f"{element} mode" if element else _unsprung(modes.isel(mode=mode)))
     return names
