@@ -9,6 +9,7 @@ JOBS ?= 2
 # What `make bench` times: a folder or one of its files.
 BENCHMARKS ?= benchmarks
 BIN := $(VENV)/bin
+PAGE := src/torsional/workbench/page
 PIP_INSTALL := -m pip install --quiet --retries 10 --timeout 60 -c constraints.txt
 
 # One single-threaded process a core: threads inside BLAS only fight the worker processes for the caches.
@@ -20,7 +21,7 @@ export MPLBACKEND = Agg
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-full lint types imports docs examples check bench constraints clean
+.PHONY: help demo test test-full lint types imports docs examples page check bench constraints clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | while IFS="$$(printf '\t')" read -r name what; do printf '  %-12s %s\n' "$$name" "$$what"; done
@@ -56,7 +57,9 @@ examples: $(VENV)/.installed-run  ## check every model file and run every script
 	@set -e; for file in examples/*.yaml; do [ -e "$$file" ] || continue; echo "torsional check $$file"; $(BIN)/torsional check --quiet "$$file"; done
 	@set -e; for file in examples/*.py; do [ -e "$$file" ] || continue; echo "python $$file"; $(BIN)/python "$$file"; done
 
-check: lint types imports examples docs test  ## everything CI runs
+page: $(PAGE)/index.html  ## the workbench's page: types, tests and build; it needs Node 20.19 or newer
+
+check: lint types imports examples docs page test  ## everything CI runs
 
 bench: $(BENCH_VENV)/.installed-bench $(APART:%=$(BENCH_VENV)-%/.tried)  ## time this project beside its peers, in an environment of their own
 	$(BENCH_VENV)/bin/python -m pytest -c benchmarks/pytest.ini $(BENCHMARKS)
@@ -70,7 +73,7 @@ constraints:  ## pin anew: names and versions from a fresh environment, into con
 	rm -rf .venv-pins
 
 clean:  ## remove what was built, the environments too
-	rm -rf $(VENV) $(BENCH_VENV) $(APART:%=$(BENCH_VENV)-%) .venv-pins docs/_build docs/_generated jupyter_execute .benchmarks build dist
+	rm -rf $(VENV) $(BENCH_VENV) $(APART:%=$(BENCH_VENV)-%) .venv-pins page/node_modules $(PAGE) docs/_build docs/_generated jupyter_execute .benchmarks build dist
 	find src tests benchmarks docs examples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # --- environments: a stamp file says that an install is done; a change of the project file or of the pins undoes it ---
@@ -111,3 +114,16 @@ $(BENCH_VENV)-%/.tried: benchmarks/peer_%.txt
 	@rm -rf $(@D)
 	@{ $(PYTHON) -m venv $(@D) && $(@D)/bin/python -m pip install --quiet --retries 3 --timeout 60 -r $<; } || { echo "$* cannot be installed here: its benchmarks go without it."; rm -rf $(@D); }
 	@mkdir -p $(@D) && touch $@
+
+# --- the workbench's page: what it is made of undoes its build ---
+
+PAGE_SOURCES := $(shell find page -name node_modules -prune -o -type f -print)
+
+page/node_modules/.installed: page/package.json page/package-lock.json
+	@command -v npm > /dev/null || { echo "The workbench's page is built by Node: install Node 20.19 or newer with npm. All else goes without it."; exit 1; }
+	@cd page && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
+$(PAGE)/index.html: page/node_modules/.installed $(PAGE_SOURCES)
+	@cd page && npx tsc --noEmit && npx vitest run && npx vite build --logLevel warn
+	@touch $@

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import json
 import re
 import subprocess
 import sys
@@ -140,6 +141,20 @@ def test_no_package_address_in_a_project_file() -> None:
         assert "://" not in (ROOT / name).read_text(encoding="utf-8"), name
 
 
+def test_the_lock_of_the_page_names_no_addresses() -> None:
+    locked = json.loads((ROOT / "page" / "package-lock.json").read_text(encoding="utf-8"))["packages"].values()
+    assert all("resolved" not in package for package in locked)
+    assert all("integrity" in package for package in locked if package.get("name") != "torsional-workbench")
+
+
+SCRIPTS = sorted(path for room in ("src", "tests") for path in (ROOT / "page" / room).rglob("*.ts*"))
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.name)
+def test_modules_of_the_page_are_small(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 300
+
+
 # --- make ---
 
 
@@ -155,7 +170,7 @@ def test_readme_and_ci_use_the_targets() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert "make demo" in readme and "make test" in readme
     stages = re.search(r"for target in (.*); do", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
-    assert stages and stages[1].split() == ["lint", "types", "imports", "examples", "docs", "test"]
+    assert stages and stages[1].split() == ["lint", "types", "imports", "examples", "docs", "page", "test"]
 
 
 def test_every_module_has_a_floor() -> None:

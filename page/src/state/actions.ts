@@ -1,0 +1,61 @@
+// What the user can do to the design, each in one place for buttons, keys and menus alike.
+
+import type { Changes, Design, Json, Settings } from "../protocol/messages";
+import { begun, changed, redone, replaced, runEnded, undone } from "./history";
+import { type Point, current, designOf, update } from "./store";
+
+export function setValue(path: string, value: Json | undefined): void {
+  update((state) => ({ history: changed(state.history, path, value) }));
+}
+
+export function setChanges(changes: Changes): void {
+  update((state) => ({ history: replaced(state.history, changes) }));
+}
+
+export function endRun(): void {
+  update((state) => ({ history: runEnded(state.history) }));
+}
+
+export function undo(): void {
+  update((state) => ({ history: undone(state.history) }));
+}
+
+export function redo(): void {
+  update((state) => ({ history: redone(state.history) }));
+}
+
+/** Another design in place of the present one; its past is its own. */
+export function loadDesign(design: Design, name: string): void {
+  const { text, files, changes } = design;
+  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {}, selected: "" };
+  update({ ...empty, text, files, name, history: begun(changes), savedChanges: changes, notice: "" });
+  setPoint({ gear: null, torque: null, speed: null });
+}
+
+export function setPoint(point: Partial<Point>): void {
+  update((state) => ({ point: { ...state.point, ...point } }));
+}
+
+export function setView(view: string): void {
+  update({ view });
+}
+
+export function setSettings(view: string, settings: Settings): void {
+  update((state) => ({ settings: { ...state.settings, [view]: { ...state.settings[view], ...settings } } }));
+}
+
+export const MOST_VARIANTS = 3;
+
+/** The present design kept beside what comes, to be compared with it. */
+export function keepVariant(name: string): void {
+  const variant = { name, design: designOf(current()) };
+  update((state) => ({ variants: [...state.variants, variant].slice(-MOST_VARIANTS), variantsTold: {} }));
+}
+
+export function dropVariant(index: number): void {
+  update((state) => ({ variants: state.variants.filter((_, i) => i !== index), variantsTold: {} }));
+}
+
+export function tell(notice: string): void {
+  update({ notice });
+}

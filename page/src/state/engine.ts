@@ -1,0 +1,91 @@
+// Asks the server whatever the design, the operating point and the view on screen need, and keeps the answers.
+
+import { answers as post } from "../protocol/client";
+import { type Answer, type Ask, type Design, type Fault, type ModelAnswer, isRefused } from "../protocol/messages";
+import { viewNamed } from "../views/registry";
+import { Asking, type Listener, type Wanted } from "./asking";
+import { MOST_VARIANTS } from "./actions";
+import { type State, current, designOf, subscribe, update } from "./store";
+
+const MODEL = "model";
+
+function viewAsks(state: State): Ask[] {
+  const view = viewNamed(state.view);
+  return view.asks({ model: state.model, point: state.point, settings: state.settings[view.name] ?? {} });
+}
+
+function modelAsk(state: State): Ask {
+  return { view: MODEL, ...(state.point.gear === null ? {} : { gear: state.point.gear }) };
+}
+
+/** The design told without its changes: shown where the changes are wrong from the beginning. */
+function withoutChanges(design: Design): Design {
+  return { ...design, changes: {} };
+}
+
+const asker = new Asking(post, { answered, refused, connection });
+const fallback = new Asking(post, { answered: fallbackAnswered, refused, connection });
+const variantAskers = Array.from({ length: MOST_VARIANTS }, (_, index) => new Asking(post, variantListener(index)));
+
+function connection(connection: State["connection"]): void {
+  if (current().connection !== connection) update({ connection });
+}
+
+/** Whether an answer is about the file that is open, and not about one that it has taken the place of. */
+function isCurrent(wanted: Wanted): boolean {
+  const { text, files } = current();
+  return wanted.design.text === text && wanted.design.files === files;
+}
+
+function answered(wanted: Wanted, found: Answer<object>[]): void {
+  if (!isCurrent(wanted)) return;
+  const [model, ...rest] = found;
+  if (isRefused(model)) return refused(wanted, model.errors as Fault[]);
+  const view = wanted.label;
+  const faults = rest.flatMap((answer) => (isRefused(answer) ? (answer.errors as Fault[]) : []));
+  update((state) => ({
+    model: model as ModelAnswer,
+    faults: [],
+    told: faults.length ? state.told : { ...state.told, [view]: { asks: wanted.asks.slice(1), answers: rest } },
+  }));
+  // A model of other parts may make the view ask otherwise; what the old asks led to is then of no interest.
+  const asks = viewAsks(current());
+  const outdated = current().view === view && JSON.stringify(asks) !== JSON.stringify(wanted.asks.slice(1));
+  if (!outdated) update((state) => ({ refused: { ...state.refused, [view]: faults } }));
+}
+
+function refused(wanted: Wanted, faults: Fault[]): void {
+  if (!isCurrent(wanted)) return;
+  update({ faults });
+  if (current().model === null && Object.keys(wanted.design.changes).length) {
+    fallback.want({ design: withoutChanges(wanted.design), asks: [{ view: MODEL }], label: MODEL });
+  }
+}
+
+function fallbackAnswered(_: Wanted, [model]: Answer<object>[]): void {
+  if (!isRefused(model) && current().model === null) update({ model: model as ModelAnswer });
+}
+
+function variantListener(index: number): Listener {
+  const put = (wanted: Wanted, found: Answer<object>[]) =>
+    update((state) => {
+      const row = [...(state.variantsTold[wanted.label] ?? [])];
+      row[index] = found.some(isRefused) ? undefined : { asks: wanted.asks, answers: found };
+      return { variantsTold: { ...state.variantsTold, [wanted.label]: row } };
+    });
+  return { answered: put, refused: (wanted) => put(wanted, [{ errors: [] }]), connection };
+}
+
+function ask(): void {
+  const state = current();
+  if (!state.text) return;
+  const asks = viewAsks(state);
+  asker.want({ design: designOf(state), asks: [modelAsk(state), ...asks], label: state.view });
+  if (!viewNamed(state.view).compares || !asks.length) return;
+  state.variants.forEach(({ design }, index) => variantAskers[index].want({ design, asks, label: state.view }));
+}
+
+export function beginAsking(): () => void {
+  ask();
+  return subscribe(ask);
+}

@@ -1,0 +1,115 @@
+// The work outlives a reload, and goes from one browser to another by a link.
+
+import type { Variant } from "../protocol/client";
+import type { Design, Settings } from "../protocol/messages";
+import { begun } from "./history";
+import { packed, unpacked } from "./link";
+import { type Point, type State, type Theme, current, designOf, isUnsaved, subscribe, update } from "./store";
+
+const WORK = "torsional.work";
+const THEME = "torsional.theme";
+const UNSAVED = "torsional.unsaved";
+
+/** What a link and the tab's memory hold. */
+export interface Work {
+  name: string;
+  design: Design;
+  point: Point;
+  view: string;
+  settings: { [view: string]: Settings };
+  selected: string;
+  variants: Variant[];
+}
+
+export function workOf(state: State): Work {
+  const { name, point, view, settings, selected, variants } = state;
+  return { name, design: designOf(state), point, view, settings, selected, variants };
+}
+
+export async function linkOf(state: State): Promise<string> {
+  return `${location.origin}${location.pathname}#d=${await packed(workOf(state))}`;
+}
+
+function isDesign(value: unknown): value is Design {
+  const design = value as Design | null;
+  const isMap = (map: unknown) => typeof map === "object" && map !== null && !Array.isArray(map);
+  return isMap(design) && typeof design?.text === "string" && isMap(design.files) && isMap(design.changes);
+}
+
+/** Takes work from a link or from the tab's memory; throws for what is none. */
+export function takeWork(value: unknown): void {
+  const work = value as Partial<Work> | null;
+  if (!isDesign(work?.design)) throw new TypeError("no design");
+  const { text, files, changes } = work.design;
+  const { name, point, view, settings, selected, variants } = { ...workOf(current()), ...work };
+  const rest = { name, point, view, settings, selected };
+  const sound = (Array.isArray(variants) ? variants : []).filter((variant) => isDesign(variant?.design));
+  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {} };
+  update({ ...empty, ...rest, text, files, history: begun(changes), savedChanges: {}, variants: sound.slice(0, 3) });
+}
+
+export async function takeLink(text: string): Promise<void> {
+  takeWork(await unpacked(text));
+}
+
+/** The work that this tab had before it was loaded anew; false where there is none. */
+export function takeKept(): boolean {
+  try {
+    const kept = sessionStorage.getItem(WORK);
+    if (kept === null) return false;
+    takeWork(JSON.parse(kept));
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+export interface Unsaved {
+  time: string;
+  work: Work;
+}
+
+/** Work with changes that was left unsaved in a tab that is gone. */
+export function unsavedWork(): Unsaved | null {
+  try {
+    return JSON.parse(localStorage.getItem(UNSAVED) ?? "null") as Unsaved | null;
+  } catch {
+    return null;
+  }
+}
+
+function keep(): void {
+  const state = current();
+  if (!state.text) return;
+  const work = workOf(state);
+  try {
+    sessionStorage.setItem(WORK, JSON.stringify(work));
+    if (isUnsaved(state)) localStorage.setItem(UNSAVED, JSON.stringify({ time: new Date().toISOString(), work }));
+  } catch {
+    // A full or forbidden store keeps nobody from working; a link or a saved file holds the work all the same.
+  }
+}
+
+export function keepWork(): () => void {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const soon = () => {
+    clearTimeout(timer);
+    timer = setTimeout(keep, 300);
+  };
+  window.addEventListener("pagehide", keep);
+  const quiet = subscribe(soon);
+  return () => {
+    quiet();
+    window.removeEventListener("pagehide", keep);
+  };
+}
+
+export function keptTheme(): Theme {
+  const kept = localStorage.getItem(THEME);
+  return kept === "light" || kept === "dark" ? kept : "system";
+}
+
+export function keepTheme(theme: Theme): void {
+  localStorage.setItem(THEME, theme);
+  document.documentElement.dataset.theme = theme;
+}
