@@ -14,7 +14,7 @@ from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.results import dataset, of_model
-from torsional.solvers.modal import modal, natural_frequencies
+from torsional.solvers.modal import modal_values, natural_frequencies
 from torsional.solvers.operating import at_operating_point
 from torsional.system import System
 
@@ -92,10 +92,11 @@ def _speeds(model: Model) -> Array:
 def _line(system: System, speeds: Array, orders: Array) -> _Line:
     """Speed matters only to pendulums and to switched inertias: without them one solution holds everywhere."""
     steady = not system.connections.centrifugal_stiffness.any() and not any(system.masses.switches)
-    found = [modal(system, float(speed)) for speed in (speeds[:1] if steady else speeds)]
+    found = [modal_values(system, float(speed)) for speed in (speeds[:1] if steady else speeds)]
     repeats = (len(speeds) // len(found), 1)
-    frequency, damping = (np.tile([m[key].values for m in found], repeats) for key in ("frequency", "damping_ratio"))
-    shares = np.tile([m.elastic_share.values for m in found], (*repeats, 1))
+    frequency = np.tile([m.frequency for m in found], repeats)
+    damping = np.tile([m.damping_ratio for m in found], repeats)
+    shares = np.tile([m.elastic_share for m in found], (*repeats, 1))
     return _Line(system.connections.names, frequency, damping, shares, _crossings(system, speeds, frequency, orders))
 
 

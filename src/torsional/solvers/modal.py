@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
 
@@ -31,8 +33,42 @@ def modal(system: System, speed: float = 0.0) -> xr.Dataset:
     >>> modal(assemble(Powertrain(pair))).frequency.values.round(1)
     array([  0. , 176.1])
     """
+    found = modal_values(system, speed)
+    return dataset(
+        {
+            "frequency": (("mode",), found.frequency, "frequency"),
+            "damping_ratio": (("mode",), found.damping_ratio, "damping_ratio"),
+            "shape": (("mode", "node"), found.shape, "mode_shape"),
+            "elastic_share": (("mode", "element"), found.elastic_share, "energy_share"),
+            "kinetic_share": (("mode", "mass"), found.kinetic_share, "energy_share"),
+        },
+        {
+            "mode": (np.arange(found.frequency.size), ""),
+            "node": (np.array(system.nodes), ""),
+            "element": (np.array(system.connections.names), ""),
+            "mass": (np.array(system.masses.names), ""),
+        },
+        analysis="modal",
+        mean_speed=float(speed),
+        system_hash=system.hash,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ModalValues:
+    """What `modal` tells, as plain arrays: for analyses that ask it very often."""
+
+    frequency: Array
+    damping_ratio: Array
+    shape: Array
+    elastic_share: Array
+    kinetic_share: Array
+
+
+def modal_values(system: System, speed: float) -> ModalValues:
+    """The values of `modal`; ModelError for a nonlinear system."""
     linear(system)
-    told, system = system.hash, system.switched(speed)
+    system = system.switched(speed)
     omega, shapes = _modes(system, speed)
     c, m = system.connections, system.masses
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -43,24 +79,7 @@ def modal(system: System, speed: float = 0.0) -> xr.Dataset:
     kinetic = m.inertia[:, None] * (m.weights @ shapes) ** 2
     angles = system.T @ shapes
     largest = angles[np.abs(angles).argmax(axis=0), np.arange(omega.size)]
-    return dataset(
-        {
-            "frequency": (("mode",), omega / (2 * np.pi), "frequency"),
-            "damping_ratio": (("mode",), ratio, "damping_ratio"),
-            "shape": (("mode", "node"), (angles / largest).T, "mode_shape"),
-            "elastic_share": (("mode", "element"), elastic.T, "energy_share"),
-            "kinetic_share": (("mode", "mass"), kinetic.T, "energy_share"),
-        },
-        {
-            "mode": (np.arange(omega.size), ""),
-            "node": (np.array(system.nodes), ""),
-            "element": (np.array(c.names), ""),
-            "mass": (np.array(m.names), ""),
-        },
-        analysis="modal",
-        mean_speed=float(speed),
-        system_hash=told,
-    )
+    return ModalValues(omega / (2 * np.pi), ratio, (angles / largest).T, elastic.T, kinetic.T)
 
 
 @checked
