@@ -125,6 +125,13 @@ def test_designs_do_not_share_what_they_change(design: Designed) -> None:
     assert changed_document(design_of(design()))["absorber"]["stiffness"] == "13 kNm/rad"
 
 
+def test_the_order_of_changes_counts(design: Designed) -> None:
+    block = {"type": "dual_mass_flywheel", "primary_inertia": 1.2, "secondary_inertia": 1.0, "stiffness": 9e3}
+    for changes in ({"absorber": block, "absorber.stiffness": "8e3"}, {"absorber.stiffness": "8e3", "absorber": block}):
+        law = model_of(design_of({**design(), "changes": changes})).components["dmf"].law
+        assert law.tangent(0.01) == (8e3 if next(iter(changes)) == "absorber" else 9e3)
+
+
 def test_an_engine_that_stays_is_kept(design: Designed) -> None:
     engines = [model_of(design_of(design(absorber__damping=str(d)))).engine for d in (11, 12)]
     other = model_of(design_of(design(engine__bore="130 mm"))).engine

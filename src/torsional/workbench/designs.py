@@ -58,7 +58,7 @@ def design_of(data: object) -> Design:
 
 def model_of(design: Design) -> Model:
     """The model of a design; ModelError with the key path of whatever it could not have."""
-    told = json.dumps(design.changes, sort_keys=True)
+    told = json.dumps(design.changes)  # in their order: a block that comes later takes the place of its values
     return _kept(*design.base, told, lambda: _changed(design))
 
 
