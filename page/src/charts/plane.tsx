@@ -28,6 +28,8 @@ interface PlaneProps {
   x: Axis;
   y: Axis;
   height: number;
+  /** Words instead of numbers below the axis need more room and stand aslant. */
+  slanted?: boolean;
   children: (paper: Paper) => ReactNode;
   /** What lies below the axes, as a canvas. */
   behind?: (paper: Paper) => ReactNode;
@@ -39,11 +41,12 @@ const LEFT = 62;
 const RIGHT = 14;
 const TOP = 10;
 const BOTTOM = 42;
+const SLANTED = 78;
 
-export function Plane({ label, x, y, height, children, behind, onPoint, onLeave }: PlaneProps) {
+export function Plane({ label, x, y, height, slanted = false, children, behind, onPoint, onLeave }: PlaneProps) {
   const [ref, width] = useWidth<HTMLDivElement>();
   const look = useLook();
-  const paper = useMemo(() => paperOf(x.range, y.range, width, height, look), [x.range[0], x.range[1], y.range[0], y.range[1], width, height, look]);
+  const paper = useMemo(() => paperOf(x.range, y.range, width, height - (slanted ? SLANTED : BOTTOM), look), [x.range[0], x.range[1], y.range[0], y.range[1], width, height, slanted, look]);
   const pointed = (event: PointerEvent<SVGSVGElement>) => {
     const box = event.currentTarget.getBoundingClientRect();
     onPoint?.(paper.x.value(event.clientX - box.left), paper.y.value(event.clientY - box.top));
@@ -54,7 +57,7 @@ export function Plane({ label, x, y, height, children, behind, onPoint, onLeave 
         <>
           {behind?.(paper)}
           <svg role="img" aria-label={label} width={width} height={height} onPointerMove={onPoint && pointed} onPointerDown={onPoint && pointed} onPointerLeave={onLeave}>
-            <Axes paper={paper} x={x} y={y} grid={behind === undefined} />
+            <Axes paper={paper} x={x} y={y} grid={behind === undefined} slanted={slanted} />
             {children(paper)}
           </svg>
         </>
@@ -64,7 +67,7 @@ export function Plane({ label, x, y, height, children, behind, onPoint, onLeave 
 }
 
 function paperOf(x: Range, y: Range, width: number, height: number, look: Look): Paper {
-  const inner = { left: LEFT, top: TOP, width: Math.max(width - LEFT - RIGHT, 10), height: height - TOP - BOTTOM };
+  const inner = { left: LEFT, top: TOP, width: Math.max(width - LEFT - RIGHT, 10), height: height - TOP };
   return {
     ...inner,
     look,
@@ -77,15 +80,23 @@ function marksOf(axis: Axis, size: number): [number, string][] {
   return axis.marks ?? ticks(axis.range, size).map((value) => [value, told(value)]);
 }
 
-function Axes({ paper, x, y, grid }: { paper: Paper; x: Axis; y: Axis; grid: boolean }) {
+interface AxesProps {
+  paper: Paper;
+  x: Axis;
+  y: Axis;
+  grid: boolean;
+  slanted: boolean;
+}
+
+function Axes({ paper, x, y, grid, slanted }: AxesProps) {
   const { left, top, width, height, look } = paper;
   const bottom = top + height;
   return (
     <g className="axes" fill={look.faint} stroke="none">
-      {marksOf(x, width / 90).map(([value, text]) => (
+      {marksOf(x, width / 65).map(([value, text]) => (
         <g key={value}>
           {grid && <line x1={paper.x.place(value)} x2={paper.x.place(value)} y1={top} y2={bottom} stroke={look.grid} />}
-          <text x={paper.x.place(value)} y={bottom + 15} textAnchor="middle">{text}</text>
+          <text textAnchor={slanted ? "start" : "middle"} transform={`translate(${paper.x.place(value)} ${bottom + 15})${slanted ? " rotate(50)" : ""}`}>{text}</text>
         </g>
       ))}
       {marksOf(y, height / 45).map(([value, text]) => (

@@ -1,9 +1,13 @@
 // The views of the page in the order of their tabs; a new one is a module of its own and a line here.
 
+import { CHARACTERISTIC } from "./characteristic";
+import { INTERFERENCE } from "./interference";
+import { MAP } from "./map";
+import { MODES } from "./modes";
 import { RESPONSE } from "./response";
 import type { View } from "./view";
 
-export const VIEWS: View[] = [RESPONSE];
+export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC];
 
 /** A view by its name; the first one for a name of an older link. */
 export function viewNamed(name: string): View {

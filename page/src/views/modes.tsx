@@ -1,0 +1,195 @@
+// Natural modes: their shapes along the chain, moving, and where their energy is.
+
+import { useEffect, useMemo, useRef } from "react";
+import { type Paper, Plane } from "../charts/plane";
+import { type Figures, Picture } from "../charts/picture";
+import { useCalm } from "../charts/style";
+import { row } from "../protocol/frame";
+import type { Ask, Grid, ModelAnswer, Units } from "../protocol/messages";
+import { useStore } from "../state/store";
+import { amount, told as number } from "../units";
+import { pointOf } from "./point";
+import { words } from "./values";
+import type { Context, Shown, View } from "./view";
+
+interface Modes {
+  gear: string;
+  torque: number;
+  speed: number;
+  order: number | null;
+  name: string[];
+  nodes: string[];
+  elements: string[];
+  masses: string[];
+  frequency: Grid;
+  damping_ratio: Grid;
+  order_speed: Grid | null;
+  shape: Grid;
+  elastic_share: Grid;
+  kinetic_share: Grid;
+}
+
+function asks({ point }: Context): Ask[] {
+  return [{ view: "modes", ...pointOf(point) }];
+}
+
+function ModesView({ told, variants, model, settings, set }: Shown) {
+  const found = told.answers[0] as Modes;
+  const units = useStore((state) => state.start?.units ?? {});
+  const elastic = firstElastic(found);
+  const asked = typeof settings.mode === "number" ? settings.mode : elastic;
+  const mode = Math.min(asked, found.name.length - 1);
+  const others = variants.map(({ name, told: other }) => ({ name, found: other?.answers[0] as Modes | undefined }));
+  const point = `gear ${found.gear}, ${amount(units, "torque", found.torque)}, ${amount(units, "speed", found.speed)}`;
+  const title = `${heading(found, mode)}, ${amount(units, "frequency", found.frequency.data[mode])}`;
+  return (
+    <>
+      <ModeTable found={found} others={others} mode={mode} units={units} choose={(index) => set({ mode: index })} />
+      <Picture title={title} note={point} ask={told.asks[0]} figures={() => shapeFigures(found, mode)}>
+        <ShapePlot found={found} model={model} mode={mode} still={settings.still === true} put={(still) => set({ still })} />
+      </Picture>
+      <div className="beside">
+        <Shares title="Elastic energy" names={found.elements} shares={row(found.elastic_share, mode)} />
+        <Shares title="Kinetic energy" names={found.masses} shares={row(found.kinetic_share, mode)} />
+      </div>
+    </>
+  );
+}
+
+/** The first mode that is no turning as one. */
+function firstElastic(found: Modes): number {
+  return Math.max(found.frequency.data.findIndex((value) => value > 1e-3), 0);
+}
+
+function heading(found: Modes, mode: number): string {
+  return `Mode ${mode + 1}${found.name[mode] ? `: ${words(found.name[mode])}` : ""}`;
+}
+
+interface TableProps {
+  found: Modes;
+  others: { name: string; found: Modes | undefined }[];
+  mode: number;
+  units: Units;
+  choose: (mode: number) => void;
+}
+
+function ModeTable({ found, others, mode, units, choose }: TableProps) {
+  return (
+    <div className="scroll modes" role="region" aria-label="Modes" tabIndex={0}>
+      <table>
+        <caption className="hidden">Modes; a name shows the shape</caption>
+        <thead>
+          <tr>
+            <th scope="col">mode</th>
+            <th scope="col">frequency [Hz]</th>
+            {others.map(({ name }) => <th key={name} scope="col">{name} [Hz]</th>)}
+            <th scope="col">damping ratio [%]</th>
+            {found.order_speed && <th scope="col">order {found.order} at [rpm]</th>}
+          </tr>
+        </thead>
+        <tbody>
+          {found.name.map((name, index) => (
+            <tr key={index} className={index === mode ? "chosen" : ""}>
+              <th scope="row">
+                <button type="button" aria-pressed={index === mode} onClick={() => choose(index)}>{index + 1}{name && ` ${words(name)}`}</button>
+              </th>
+              <td>{number(found.frequency.data[index])}</td>
+              {others.map((other) => <td key={other.name}>{other.found ? number(other.found.frequency.data[index] ?? NaN) : "…"}</td>)}
+              <td>{number(100 * found.damping_ratio.data[index], 3)}</td>
+              {found.order_speed && <td>{number(found.order_speed.data[index] / (units.speed?.factor ?? 1))}</td>}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function shapeFigures(found: Modes, mode: number): Figures {
+  const shape = row(found.shape, mode);
+  return { columns: ["node", "shape, largest angle one"], rows: found.nodes.map((node, i) => [words(node), number(shape[i])]) };
+}
+
+interface ShapeProps {
+  found: Modes;
+  model: ModelAnswer;
+  mode: number;
+  still: boolean;
+  put: (still: boolean) => void;
+}
+
+function ShapePlot({ found, model, mode, still, put }: ShapeProps) {
+  const calm = useCalm();
+  const shape = row(found.shape, mode);
+  const places = useMemo(() => chainOrder(found.nodes, model), [found.nodes, model]);
+  const isStill = still || calm;
+  return (
+    <>
+      <Plane label={`Shape of mode ${mode + 1} along the chain`} height={260} slanted x={{ range: [-0.6, places.length - 0.4], label: "", marks: places.map((node, i) => [i, words(found.nodes[node])]) }} y={{ range: [-1.1, 1.1], label: "angle, largest one" }}>
+        {(paper) => <Shape paper={paper} values={places.map((node) => shape[node])} still={isStill} />}
+      </Plane>
+      {!calm && <button type="button" aria-pressed={!still} onClick={() => put(!still)}>{still ? "Move" : "Hold still"}</button>}
+    </>
+  );
+}
+
+/** Indices of the nodes from left to right, as the chain is drawn. */
+function chainOrder(nodes: string[], model: ModelAnswer): number[] {
+  const places = new Map(model.chain.nodes.map((node) => [node.name, node.x + 0.01 * node.y]));
+  return nodes.map((_, i) => i).sort((a, b) => (places.get(nodes[a]) ?? a) - (places.get(nodes[b]) ?? b));
+}
+
+const PERIOD = 1600;
+
+function Shape({ paper, values, still }: { paper: Paper; values: number[]; still: boolean }) {
+  const ref = useRef<SVGGElement>(null);
+  const { x, y, look } = paper;
+  useEffect(() => {
+    if (still) {
+      ref.current?.removeAttribute("transform");
+      return undefined;
+    }
+    let frame = 0;
+    const zero = y.place(0);
+    const move = (time: number) => {
+      const size = Math.cos((2 * Math.PI * time) / PERIOD);
+      ref.current?.setAttribute("transform", `matrix(1 0 0 ${size.toFixed(4)} 0 ${(zero * (1 - size)).toFixed(2)})`);
+      frame = requestAnimationFrame(move);
+    };
+    frame = requestAnimationFrame(move);
+    return () => cancelAnimationFrame(frame);
+  }, [still, paper]);
+  const path = values.map((value, i) => `${i ? "L" : "M"}${x.place(i).toFixed(1)} ${y.place(value).toFixed(1)}`).join("");
+  return (
+    <>
+      <line x1={paper.left} x2={paper.left + paper.width} y1={y.place(0)} y2={y.place(0)} stroke={look.faint} />
+      <path d={path} fill="none" stroke={look.colours[0]} strokeOpacity={0.25} strokeWidth={1.5} />
+      <g ref={ref}>
+        <path d={path} fill="none" stroke={look.colours[0]} strokeWidth={2} vectorEffect="non-scaling-stroke" />
+        {values.map((value, i) => <line key={i} x1={x.place(i)} x2={x.place(i)} y1={y.place(0)} y2={y.place(value)} stroke={look.colours[0]} strokeWidth={6} strokeOpacity={0.65} />)}
+      </g>
+    </>
+  );
+}
+
+const MOST_SHARES = 8;
+
+function Shares({ title, names, shares }: { title: string; names: string[]; shares: Float64Array }) {
+  const largest = [...shares.keys()].sort((a, b) => shares[b] - shares[a]).slice(0, MOST_SHARES).filter((i) => shares[i] > 0.005);
+  return (
+    <table className="shares">
+      <caption>{title}</caption>
+      <tbody>
+        {largest.map((i) => (
+          <tr key={names[i]}>
+            <th scope="row">{words(names[i])}</th>
+            <td>{number(100 * shares[i], 3)} %</td>
+            <td aria-hidden="true"><span style={{ width: `${100 * shares[i]}%` }} /></td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export const MODES: View = { name: "modes", title: "Modes", asks, compares: true, component: ModesView };
