@@ -62,6 +62,16 @@ describe("asking", () => {
     expect(sent).toHaveLength(1);
   });
 
+  it("asks again what was forgotten", async () => {
+    const { asking, sent, settled } = staged();
+    asking.want(wanted("1"));
+    sent[0].answer([]);
+    await settled();
+    asking.forget();
+    asking.want(wanted("1"));
+    expect(sent).toHaveLength(2);
+  });
+
   it("tries again with growing pauses while the server is away, then with the newest wish", async () => {
     const { asking, sent, log, pauses, settled } = staged();
     asking.want(wanted("1"));

@@ -1,7 +1,7 @@
 // A picture with its title, its figures as a table for who cannot see it, and its export as a file.
 
 import { type ReactNode, useState } from "react";
-import { exported } from "../protocol/client";
+import { type Download, type Format, exported } from "../protocol/client";
 import type { Ask } from "../protocol/messages";
 import { attempt, handOver } from "../parts/downloads";
 import { Menu } from "../parts/menu";
@@ -20,13 +20,17 @@ interface PictureProps {
   ask?: Ask;
   /** Whether kept variants are in the picture. */
   compared?: boolean;
+  /** Instead of an ask: how else the picture is had as a file. */
+  save?: (format: Format) => Promise<Download>;
+  /** The files that can be had of it; all kinds by default. */
+  formats?: Format[];
   figures: () => Figures;
   children: ReactNode;
 }
 
-const FORMATS = ["png", "svg", "csv"] as const;
+const FORMATS: Format[] = ["png", "svg", "csv"];
 
-export function Picture({ title, note, ask, compared, figures, children }: PictureProps) {
+export function Picture({ title, note, ask, compared, save, formats = FORMATS, figures, children }: PictureProps) {
   const [asTable, setAsTable] = useState(false);
   return (
     <figure className="picture">
@@ -34,23 +38,28 @@ export function Picture({ title, note, ask, compared, figures, children }: Pictu
         <h3>{title}</h3>
         {note && <small>{note}</small>}
         <button type="button" aria-pressed={asTable} onClick={() => setAsTable(!asTable)}>Figures</button>
-        {ask && <Export ask={ask} compared={compared ?? false} />}
+        {save && <ExportMenu formats={formats} save={save} />}
+        {ask && <Export ask={ask} compared={compared ?? false} formats={formats} />}
       </figcaption>
       {asTable ? <Table caption={title} {...figures()} /> : children}
     </figure>
   );
 }
 
-function Export({ ask, compared }: { ask: Ask; compared: boolean }) {
+function Export({ ask, compared, formats }: { ask: Ask; compared: boolean; formats: Format[] }) {
   const { dark } = useLook();
-  const save = async (format: (typeof FORMATS)[number]) => {
+  const save = (format: Format) => {
     const state = current();
     const variants = [{ name: state.name, design: designOf(state) }, ...(compared ? state.variants : [])];
-    handOver(await exported(variants, ask, format, dark));
+    return exported(variants, ask, format, dark);
   };
+  return <ExportMenu formats={formats} save={save} />;
+}
+
+function ExportMenu({ formats, save }: { formats: Format[]; save: (format: Format) => Promise<Download> }) {
   return (
     <Menu label="Export">
-      {FORMATS.map((format) => <button key={format} type="button" onClick={() => void attempt("Export", () => save(format))}>{format.toUpperCase()}</button>)}
+      {formats.map((format) => <button key={format} type="button" onClick={() => void attempt("Export", async () => handOver(await save(format)))}>{format.toUpperCase()}</button>)}
     </Menu>
   );
 }

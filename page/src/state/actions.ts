@@ -2,7 +2,7 @@
 
 import type { Changes, Design, Json, Settings } from "../protocol/messages";
 import { begun, changed, redone, replaced, runEnded, undone } from "./history";
-import { type Point, current, designOf, update } from "./store";
+import { type Point, update } from "./store";
 
 export function setValue(path: string, value: Json | undefined): void {
   update((state) => ({ history: changed(state.history, path, value) }));
@@ -42,18 +42,6 @@ export function setView(view: string): void {
 
 export function setSettings(view: string, settings: Settings): void {
   update((state) => ({ settings: { ...state.settings, [view]: { ...state.settings[view], ...settings } } }));
-}
-
-export const MOST_VARIANTS = 3;
-
-/** The present design kept beside what comes, to be compared with it. */
-export function keepVariant(name: string): void {
-  const variant = { name, design: designOf(current()) };
-  update((state) => ({ variants: [...state.variants, variant].slice(-MOST_VARIANTS), variantsTold: {} }));
-}
-
-export function dropVariant(index: number): void {
-  update((state) => ({ variants: state.variants.filter((_, i) => i !== index), variantsTold: {} }));
 }
 
 export function tell(notice: string): void {

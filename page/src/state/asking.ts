@@ -44,6 +44,11 @@ export class Asking {
     else if (this.flight.wanted.label !== wanted.label) this.flight.abort.abort();
   }
 
+  /** Ask again even what was asked last: its answer was thrown away. */
+  forget(): void {
+    this.last = null;
+  }
+
   private async run(): Promise<void> {
     let failures = 0;
     while (this.next !== null) {

@@ -4,8 +4,8 @@ import { answers as post } from "../protocol/client";
 import { type Answer, type Ask, type Design, type Fault, type ModelAnswer, isRefused } from "../protocol/messages";
 import { viewNamed } from "../views/registry";
 import { Asking, type Listener, type Wanted } from "./asking";
-import { MOST_VARIANTS } from "./actions";
 import { type State, current, designOf, subscribe, update } from "./store";
+import { MOST_VARIANTS } from "./variants";
 
 const MODEL = "model";
 
@@ -67,17 +67,23 @@ function fallbackAnswered(_: Wanted, [model]: Answer<object>[]): void {
 }
 
 function variantListener(index: number): Listener {
-  const put = (wanted: Wanted, found: Answer<object>[]) =>
+  const put = (wanted: Wanted, found: Answer<object>[]) => {
+    if (current().variants[index]?.design !== wanted.design) return; // it has been moved or removed meanwhile
     update((state) => {
       const row = [...(state.variantsTold[wanted.label] ?? [])];
       row[index] = found.some(isRefused) ? undefined : { asks: wanted.asks, answers: found };
       return { variantsTold: { ...state.variantsTold, [wanted.label]: row } };
     });
+  };
   return { answered: put, refused: (wanted) => put(wanted, [{ errors: [] }]), connection };
 }
 
+let askedVariants: State["variants"] = [];
+
 function ask(): void {
   const state = current();
+  if (state.variants !== askedVariants) variantAskers.forEach((asker) => asker.forget());
+  askedVariants = state.variants;
   if (!state.text) return;
   const asks = viewAsks(state);
   asker.want({ design: designOf(state), asks: [modelAsk(state), ...asks], label: state.view });

@@ -5,6 +5,7 @@ import type { Design, Settings } from "../protocol/messages";
 import { begun } from "./history";
 import { packed, unpacked } from "./link";
 import { type Point, type State, type Theme, current, designOf, isUnsaved, subscribe, update } from "./store";
+import { MOST_VARIANTS } from "./variants";
 
 const WORK = "torsional.work";
 const THEME = "torsional.theme";
@@ -45,7 +46,7 @@ export function takeWork(value: unknown): void {
   const rest = { name, point, view, settings, selected };
   const sound = (Array.isArray(variants) ? variants : []).filter((variant) => isDesign(variant?.design));
   const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {} };
-  update({ ...empty, ...rest, text, files, history: begun(changes), savedChanges: {}, variants: sound.slice(0, 3) });
+  update({ ...empty, ...rest, text, files, history: begun(changes), savedChanges: {}, variants: sound.slice(0, MOST_VARIANTS) });
 }
 
 export async function takeLink(text: string): Promise<void> {

@@ -1,13 +1,14 @@
 // The views of the page in the order of their tabs; a new one is a module of its own and a line here.
 
 import { CHARACTERISTIC } from "./characteristic";
+import { COMPARISON } from "./comparison/view";
 import { INTERFERENCE } from "./interference";
 import { MAP } from "./map";
 import { MODES } from "./modes";
 import { RESPONSE } from "./response";
 import type { View } from "./view";
 
-export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC];
+export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, COMPARISON];
 
 /** A view by its name; the first one for a name of an older link. */
 export function viewNamed(name: string): View {
