@@ -12,7 +12,8 @@ import torsional
 from torsional.errors import ModelError
 from torsional.files.reader import parse_tree
 from torsional.workbench.absorbers import choices
-from torsional.workbench.designs import changed_document, design_of, faults, missing, model_of, saved
+from torsional.workbench.designs import changed_document, design_of, missing, model_of, saved
+from torsional.workbench.refusals import faults
 
 Designed = Callable[..., dict[str, Any]]
 PSVA = {"type": "power_split", "primary_inertia": "1.2 kgm²", "secondary_inertia": 0.6, "planet_inertia": 0.01}

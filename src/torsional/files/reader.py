@@ -109,7 +109,7 @@ def _node(token: Token, tokens: Iterator[Token], path: str, lines: dict[str, int
     if token.kind == "plain":
         return resolved(token.text, place)
     if token.kind == "text":
-        return _visible(token.text, place)
+        return visible(token.text, place)
     if path.count(".") >= DEPTH - 1:
         raise ModelError("the file is nested too deeply", where=f"line {token.line}", allowed=f"at most {DEPTH} levels")
     return _mapping(tokens, path, lines) if token.kind == "map" else _sequence(tokens, path, lines)
@@ -157,7 +157,7 @@ def _key(token: Token, path: str) -> str:
     return token.text
 
 
-def _visible(text: str, place: str) -> str:
+def visible(text: str, place: str) -> str:
     """A text without control characters or half characters that escapes such as \\u001b have brought in."""
     hidden = _INVISIBLE.search(text) or _SURROGATE.search(text)
     if hidden:

@@ -37,8 +37,12 @@ class Lost:
     times: int = 1
 
 
-class _Member(Generic[Task]):
-    """One process, the pipe to it and the task it is at."""
+class Member(Generic[Task]):
+    """One process, the pipe to it and the task it is at.
+
+    It prepares itself before its first task; what comes back over the ``pipe`` is whether the work was done, and its
+    result, or the error that it raised.
+    """
 
     def __init__(self, work: Callable[[Task], Any], prepare: Callable[..., None], given: tuple[Any, ...]) -> None:
         context = multiprocessing.get_context("spawn")
@@ -85,7 +89,7 @@ class Crew(Generic[Task, Result]):
     ) -> None:
         self.count = processes or processors()
         self._work, self._prepare, self._given = work, prepare, given
-        self._members: list[_Member[Task]] = []
+        self._members: list[Member[Task]] = []
 
     def __enter__(self) -> Crew[Task, Result]:
         if self.count == 1:
@@ -124,10 +128,10 @@ class Crew(Generic[Task, Result]):
                 return
             except OSError:
                 self._members.remove(member)
-        self._members.append(_Member(self._work, self._prepare, self._given))
+        self._members.append(Member(self._work, self._prepare, self._given))
         self._members[-1].begin(task)
 
-    def _received(self, member: _Member[Task]) -> tuple[Task, Result | Lost]:
+    def _received(self, member: Member[Task]) -> tuple[Task, Result | Lost]:
         task: Any = member.task
         try:
             fine, told = member.pipe.recv()

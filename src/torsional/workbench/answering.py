@@ -7,8 +7,9 @@ from typing import Any
 from torsional.errors import ModelError
 from torsional.model import Model
 from torsional.units import quoted
-from torsional.workbench.designs import design_of, faults, model_of
+from torsional.workbench.designs import design_of, model_of
 from torsional.workbench.frames import encoded
+from torsional.workbench.refusals import faults
 from torsional.workbench.views import Answer, ask_of
 
 ASKED = 8

@@ -10,7 +10,7 @@ import copy
 import io
 import json
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from typing import Annotated, Any
 
@@ -18,10 +18,10 @@ from pydantic import Field, ValidationError
 
 from torsional.errors import ModelError
 from torsional.files.edit import parsed_edit, put
-from torsional.files.faults import SchemaError, translated
+from torsional.files.faults import translated
 from torsional.files.load import files_named, model_from_tree, rebuilt, with_contents
 from torsional.files.opening import TABLE_BYTES
-from torsional.files.reader import MODEL_BYTES, Tree, parse_tree
+from torsional.files.reader import MODEL_BYTES, Tree, parse_tree, visible
 from torsional.files.schema.fields import Block
 from torsional.model import Model
 from torsional.units import quoted
@@ -89,15 +89,19 @@ def missing(design: Design) -> tuple[str, ...]:
     return tuple(name for name in files_named(parse_tree(design.text).data) if name not in design.files)
 
 
-def faults(error: ModelError) -> list[dict[str, str]]:
-    """What is wrong, fault by fault, as the page is told it."""
-    found = error.errors if isinstance(error, SchemaError) else (error,)
-    keys = ("where", "problem", "found", "allowed", "remedy")
-    return [{**{key: getattr(one, key) for key in keys}, "text": str(one)} for one in found]
+def _texts(value: Any) -> Iterator[str]:
+    """All texts of a value, keys of its blocks too."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for item in [*value, *value.values()] if isinstance(value, dict) else value:
+            yield from _texts(item)
 
 
 def _edit(path: str, value: Any) -> tuple[str, Any]:
-    """A change as the command line reads it."""
+    """A change as the command line reads it; ModelError for characters that no model file may hold."""
+    for text in _texts(value):
+        visible(text, path)
     if not isinstance(value, str):
         return path, value
     if not value.strip():

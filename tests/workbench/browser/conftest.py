@@ -58,7 +58,7 @@ class Served:
 def built() -> None:
     """The page is there."""
     if not (Path(torsional.__file__).parent / "workbench" / "page" / "index.html").exists():
-        missing("the workbench's page was not built (it needs Node and `make page`), so it is not looked at in a browser")
+        missing("the workbench's page was not built, which `make page` does: it is not looked at in a browser")
 
 
 @pytest.fixture(scope="session")

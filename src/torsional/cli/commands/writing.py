@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from torsional.cli import options as o
+from torsional.cli import workbench_options as w
 from torsional.cli.app import app
 from torsional.cli.jobs import Job, job
 
@@ -20,6 +21,24 @@ def report(
 ) -> Job:
     """One HTML page about one model or several."""
     return job("report", **locals())
+
+
+@app.command()
+def workbench(
+    model: w.FirstModel = None,
+    host: w.Host = "",
+    port: w.Port = None,
+    token: w.Token = "",
+    no_browser: w.NoBrowser = False,
+    processes: w.AnsweringProcesses = 0,
+    results: w.Results = None,
+) -> Job:
+    """A page in the browser: the truck answers while you turn its values.
+
+    Serves this machine alone unless --host names another address, which then wants the token that is told with the
+    address. Nothing is kept on the server. Ctrl-C ends it.
+    """
+    return job("workbench", **locals())
 
 
 @app.command()
