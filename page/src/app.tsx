@@ -9,6 +9,7 @@ import { Header, listenForKeys } from "./parts/header";
 import { Notices, Warnings } from "./parts/notices";
 import { begin } from "./state/beginning";
 import { beginAsking } from "./state/engine";
+import { JOBS } from "./state/jobs";
 import { keepWork } from "./state/keeping";
 import { openFiles } from "./state/opening";
 import { useStore } from "./state/store";
@@ -20,6 +21,7 @@ export function App() {
   useEffect(() => void begin(), []);
   useEffect(() => {
     if (!ready) return undefined;
+    JOBS.resume();
     const ends = [beginAsking(), keepWork(), listenForKeys()];
     return () => ends.forEach((end) => end());
   }, [ready]);

@@ -114,26 +114,42 @@ export async function front(index: number): Promise<unknown> {
   return decodeFrame(await (await sent("GET", `api/fronts/${index}`)).arrayBuffer());
 }
 
-/** Tells this tab's jobs from those of others. */
-const SESSION = crypto.getRandomValues(new Uint32Array(4)).join("-");
+const SESSION_KEY = "torsional.session";
+
+/** Tells this tab's jobs from those of others; the same after a reload, so that they are found again. */
+function session(): string {
+  const kept = sessionStorage.getItem(SESSION_KEY);
+  if (kept) return kept;
+  const made = crypto.getRandomValues(new Uint32Array(4)).join("-");
+  sessionStorage.setItem(SESSION_KEY, made);
+  return made;
+}
 
 export type JobKind = "branches" | "region" | "scenario";
 
 export async function beginJob(design: Design, kind: JobKind, settings: Settings): Promise<string> {
-  const body: Json = { session: SESSION, design: design as unknown as Json, kind, settings };
+  const body: Json = { session: session(), design: design as unknown as Json, kind, settings };
   return ((await (await sent("POST", "api/jobs", body)).json()) as { job: string }).job;
 }
 
-const mine = { "X-Session": SESSION };
+function mine(): { [header: string]: string } {
+  return { "X-Session": session() };
+}
 
 export async function jobState(job: string): Promise<JobState> {
-  return (await sent("GET", `api/jobs/${job}`, undefined, undefined, mine)).json() as Promise<JobState>;
+  return (await sent("GET", `api/jobs/${job}`, undefined, undefined, mine())).json() as Promise<JobState>;
 }
 
 export async function jobResult(job: string): Promise<unknown> {
-  return decodeFrame(await (await sent("GET", `api/jobs/${job}/result`, undefined, undefined, mine)).arrayBuffer());
+  return decodeFrame(await (await sent("GET", `api/jobs/${job}/result`, undefined, undefined, mine())).arrayBuffer());
+}
+
+/** What a job gave as a file. */
+export async function exportJob(job: string, kind: JobKind, format: Format): Promise<Download> {
+  const found = await download(await sent("GET", `api/jobs/${job}/export/${format}`, undefined, undefined, mine()), "");
+  return { ...found, name: `${kind}.${format}` };
 }
 
 export async function cancelJob(job: string): Promise<void> {
-  await sent("DELETE", `api/jobs/${job}`, {}, undefined, mine);
+  await sent("DELETE", `api/jobs/${job}`, {}, undefined, mine());
 }

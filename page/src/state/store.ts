@@ -1,9 +1,10 @@
 // What the page knows; parts of it subscribe to the values that they show.
 
 import { useSyncExternalStore } from "react";
-import type { Variant } from "../protocol/client";
+import type { JobKind, Variant } from "../protocol/client";
 import type { Ask, Changes, Design, Fault, ModelAnswer, Settings, Start } from "../protocol/messages";
 import { type History, begun } from "./history";
+import type { Job } from "./jobs";
 import type { Incomplete } from "./opening";
 
 export type Theme = "system" | "light" | "dark";
@@ -45,6 +46,8 @@ export interface State {
   told: { [view: string]: Told };
   refused: { [view: string]: Fault[] };
   variantsTold: { [view: string]: (Told | undefined)[] };
+  /** What is worked on in the background, or was last: one of each kind. */
+  jobs: { [kind in JobKind]?: Job };
 }
 
 const EMPTY: State = {
@@ -69,6 +72,7 @@ const EMPTY: State = {
   told: {},
   refused: {},
   variantsTold: {},
+  jobs: {},
 };
 
 let state = EMPTY;

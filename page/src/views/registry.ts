@@ -1,5 +1,6 @@
 // The views of the page in the order of their tabs; a new one is a module of its own and a line here.
 
+import { BRANCHES } from "./branches/view";
 import { CHARACTERISTIC } from "./characteristic";
 import { COMPARISON } from "./comparison/view";
 import { INTERFERENCE } from "./interference";
@@ -8,7 +9,7 @@ import { MODES } from "./modes";
 import { RESPONSE } from "./response";
 import type { View } from "./view";
 
-export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, COMPARISON];
+export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, BRANCHES, COMPARISON];
 
 /** A view by its name; the first one for a name of an older link. */
 export function viewNamed(name: string): View {
