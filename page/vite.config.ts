@@ -1,6 +1,8 @@
 import react from "@vitejs/plugin-react";
 import { defineConfig } from "vite";
 
+const SERVER = "http://127.0.0.1:8210";
+
 // No inline script and no inline picture: the server's content policy allows files of its own alone.
 export default defineConfig({
   base: "./",
@@ -12,6 +14,6 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     target: "es2022",
   },
-  // `npm run dev` beside a running `torsional workbench --port 8765`.
-  server: { proxy: { "/api": { target: "http://127.0.0.1:8765", changeOrigin: true } } },
+  // `npm run dev` beside a running `torsional workbench --no-browser`; the server answers pages of its own address alone.
+  server: { proxy: { "/api": { target: SERVER, changeOrigin: true, headers: { Origin: SERVER } } } },
 });

@@ -2,7 +2,7 @@
 
 import { told } from "../units";
 import type { Colours } from "./heat";
-import { logTicks } from "./scales";
+import { logTicks, ticks } from "./scales";
 
 const HEIGHT = 14;
 const STEPS = 48;
@@ -11,7 +11,8 @@ const STEPS = 48;
 export function ColourBar({ colours, label, width = 320 }: { colours: Colours; label: string; width?: number }) {
   const [low, high] = colours.range;
   const place = (value: number) => (width * Math.log(value / low)) / Math.log(high / low);
-  const marks = logTicks(colours.range).filter((value, i, all) => i === 0 || place(value) - place(all[i - 1]) > 26);
+  const round = logTicks(colours.range);
+  const marks = (round.length > 3 ? round : ticks(colours.range, 6)).filter((value, i, all) => i === 0 || place(value) - place(all[i - 1]) > 26);
   return (
     <div className="colourbar">
       <svg width={width + 40} height={HEIGHT + 18} role="img" aria-label={`Colours from ${told(low, 3)} to ${told(high, 3)}, ${label}`}>

@@ -26,7 +26,8 @@ export interface Marks {
 interface LinesProps {
   label: string;
   x: { values: ArrayLike<number>; label: string };
-  y: { label: string; range?: [number, number]; log?: boolean };
+  /** `free`: the axis need not begin at zero. */
+  y: { label: string; range?: [number, number]; log?: boolean; free?: boolean };
   lines: Line[];
   marks?: Marks;
   height: number;
@@ -87,6 +88,11 @@ function shapeOf(lines: Line[]): string {
   return JSON.stringify(lines.map(({ name, colour, dash, width, faint }) => [name, colour, dash, width, faint]));
 }
 
+function rangeOf(y: LinesProps["y"]): uPlot.Scale["range"] {
+  if (y.range) return () => y.range!;
+  return y.log || y.free ? undefined : (_, low, high) => [Math.min(low, 0), high * 1.05 || 1];
+}
+
 function optionsOf(props: LinesProps, look: Look, width: number, marks: Box<Marks>, seen: (index: number | null) => void): uPlot.Options {
   const { x, y, lines, height } = props;
   return {
@@ -96,7 +102,7 @@ function optionsOf(props: LinesProps, look: Look, width: number, marks: Box<Mark
     cursor: { y: false, drag: { x: true, y: false }, points: { size: 7 } },
     scales: {
       x: { time: false },
-      y: { distr: y.log ? 3 : 1, range: y.range ? () => y.range! : y.log ? undefined : (_, low, high) => [Math.min(low, 0), high * 1.05 || 1] },
+      y: { distr: y.log ? 3 : 1, range: rangeOf(y) },
     },
     axes: [axis(x.label, look, 34), axis(y.label, look, 58)],
     series: [{}, ...lines.map((line) => series(line, look))],

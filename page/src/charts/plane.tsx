@@ -33,6 +33,8 @@ interface PlaneProps {
   children: (paper: Paper) => ReactNode;
   /** What lies below the axes, as a canvas. */
   behind?: (paper: Paper) => ReactNode;
+  /** What lies above them, as a moving layer. */
+  before?: (paper: Paper) => ReactNode;
   onPoint?: (x: number, y: number) => void;
   onLeave?: () => void;
 }
@@ -41,9 +43,9 @@ const LEFT = 62;
 const RIGHT = 14;
 const TOP = 10;
 const BOTTOM = 42;
-const SLANTED = 78;
+const SLANTED = 90;
 
-export function Plane({ label, x, y, height, slanted = false, children, behind, onPoint, onLeave }: PlaneProps) {
+export function Plane({ label, x, y, height, slanted = false, children, behind, before, onPoint, onLeave }: PlaneProps) {
   const [ref, width] = useWidth<HTMLDivElement>();
   const look = useLook();
   const paper = useMemo(() => paperOf(x.range, y.range, width, height - (slanted ? SLANTED : BOTTOM), look), [x.range[0], x.range[1], y.range[0], y.range[1], width, height, slanted, look]);
@@ -60,6 +62,7 @@ export function Plane({ label, x, y, height, slanted = false, children, behind, 
             <Axes paper={paper} x={x} y={y} grid={behind === undefined} slanted={slanted} />
             {children(paper)}
           </svg>
+          {before?.(paper)}
         </>
       )}
     </div>

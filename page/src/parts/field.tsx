@@ -34,7 +34,7 @@ export const FieldRow = memo(function FieldRow({ field, change, fault, marked }:
         </button>
       )}
       <small id={`${id}-help`}>{help}</small>
-      <p id={`${id}-fault`} className="fault" role={fault ? "alert" : undefined}>{fault}</p>
+      <p id={`${id}-fault`} className="fault" aria-live="polite">{fault}</p>
     </div>
   );
 });

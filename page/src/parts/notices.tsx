@@ -1,8 +1,10 @@
 // What the user should know at once: a lost connection, what is wrong with the design, what was done.
 
-import type { Fault } from "../protocol/messages";
+import type { Fault, FieldGroup } from "../protocol/messages";
 import { tell, undo } from "../state/actions";
-import { update, useStore } from "../state/store";
+import { type State, update, useStore } from "../state/store";
+import { groupOf } from "./fields";
+import { isAbout } from "./limits";
 
 export function Notices() {
   const connection = useStore((state) => state.connection);
@@ -22,20 +24,35 @@ export function Notices() {
   );
 }
 
+/** Faults of fields in sight are told there; the others here, with the way to their fields. */
 function Faults({ faults }: { faults: Fault[] }) {
+  const shown = useStore(fieldsInSight);
   const canUndo = useStore((state) => state.history.past.length > 0);
+  const elsewhere = faults.filter((fault) => !shown.some((path) => isAbout(fault, path)));
+  if (!elsewhere.length) return null;
   return (
     <div className="banner bad" role="alert">
       <ul>
-        {faults.slice(0, 6).map((fault, i) => (
+        {elsewhere.slice(0, 6).map((fault, i) => (
           <li key={i}>
             {fault.text} {fault.where && <button type="button" onClick={() => update({ selected: fault.where })}>Show the field</button>}
           </li>
         ))}
       </ul>
-      <p>The pictures show the last design that was sound. {canUndo && <button type="button" onClick={undo}>Undo the change</button>}</p>
+      {canUndo && <button type="button" onClick={undo}>Undo the change</button>}
     </div>
   );
+}
+
+const NONE: string[] = [];
+let seen: { group: FieldGroup; paths: string[] } | undefined;
+
+/** Key paths of the values on screen; the same array as long as they are the same. */
+function fieldsInSight({ model, selected }: State): string[] {
+  const group = model && groupOf(model.groups, selected);
+  if (!group) return NONE;
+  if (seen?.group !== group) seen = { group, paths: group.fields.map((field) => field.path) };
+  return seen.paths;
 }
 
 export function Warnings() {

@@ -41,6 +41,7 @@ function answered(wanted: Wanted, found: Answer<object>[]): void {
   if (!isCurrent(wanted)) return;
   const [model, ...rest] = found;
   if (isRefused(model)) return refused(wanted, model.errors as Fault[]);
+  clearTimeout(telling);
   const view = wanted.label;
   const faults = rest.flatMap((answer) => (isRefused(answer) ? (answer.errors as Fault[]) : []));
   update((state) => ({
@@ -54,9 +55,14 @@ function answered(wanted: Wanted, found: Answer<object>[]): void {
   if (!outdated) update((state) => ({ refused: { ...state.refused, [view]: faults } }));
 }
 
+const PATIENCE = 400;
+let telling: ReturnType<typeof setTimeout> | undefined;
+
+/** Told after a moment, since a value is wrong half the time while it is typed. */
 function refused(wanted: Wanted, faults: Fault[]): void {
   if (!isCurrent(wanted)) return;
-  update({ faults });
+  clearTimeout(telling);
+  telling = setTimeout(() => update({ faults }), current().model === null ? 0 : PATIENCE);
   if (current().model === null && Object.keys(wanted.design.changes).length) {
     fallback.want({ design: withoutChanges(wanted.design), asks: [{ view: MODEL }], label: MODEL });
   }

@@ -11,6 +11,7 @@ import type { Ask, Grid, Units } from "../protocol/messages";
 import { setPoint } from "../state/actions";
 import { useStore } from "../state/store";
 import { amount, axisLabel, shown, told as number } from "../units";
+import { limits } from "./limits";
 import { Choose } from "./settings";
 import { scaled, words } from "./values";
 import type { Context, Shown, View } from "./view";
@@ -38,17 +39,6 @@ function asks({ model, point, settings }: Context): Ask[] {
   const gear = point.gear ?? model?.gear;
   if (settings.one === true && gear) ask.gears = [gear];
   return [ask];
-}
-
-/** Logarithmic limits: the largest value within full load, and a two-hundredth of it or the smallest. */
-export function limits(values: ArrayLike<number>, within: ArrayLike<number>): [number, number] {
-  let [low, high] = [Infinity, 0];
-  for (let i = 0; i < values.length; i++) {
-    if (!(values[i] > 0) || !within[i % within.length]) continue;
-    low = Math.min(low, values[i]);
-    high = Math.max(high, values[i]);
-  }
-  return high > 0 ? [Math.max(low, high / 200) * 0.999, high] : [0.1, 1];
 }
 
 /** What is drawn: amplitudes in the shown unit, or their ratio to a variant's. */

@@ -1,6 +1,6 @@
 // Natural modes: their shapes along the chain, moving, and where their energy is.
 
-import { useEffect, useMemo, useRef } from "react";
+import { useMemo } from "react";
 import { type Paper, Plane } from "../charts/plane";
 import { type Figures, Picture } from "../charts/picture";
 import { useCalm } from "../charts/style";
@@ -123,10 +123,11 @@ function ShapePlot({ found, model, mode, still, put }: ShapeProps) {
   const shape = row(found.shape, mode);
   const places = useMemo(() => chainOrder(found.nodes, model), [found.nodes, model]);
   const isStill = still || calm;
+  const values = places.map((node) => shape[node]);
   return (
     <>
-      <Plane label={`Shape of mode ${mode + 1} along the chain`} height={260} slanted x={{ range: [-0.6, places.length - 0.4], label: "", marks: places.map((node, i) => [i, words(found.nodes[node])]) }} y={{ range: [-1.1, 1.1], label: "angle, largest one" }}>
-        {(paper) => <Shape paper={paper} values={places.map((node) => shape[node])} still={isStill} />}
+      <Plane label={`Shape of mode ${mode + 1} along the chain`} height={260} slanted x={{ range: [-0.6, places.length - 0.4], label: "", marks: places.map((node, i) => [i, words(found.nodes[node])]) }} y={{ range: [-1.1, 1.1], label: "angle, largest one" }} before={(paper) => !isStill && <Swinging paper={paper} values={values} />}>
+        {(paper) => <Shape paper={paper} values={values} still={isStill} />}
       </Plane>
       {!calm && <button type="button" aria-pressed={!still} onClick={() => put(!still)}>{still ? "Move" : "Hold still"}</button>}
     </>
@@ -139,36 +140,30 @@ function chainOrder(nodes: string[], model: ModelAnswer): number[] {
   return nodes.map((_, i) => i).sort((a, b) => (places.get(nodes[a]) ?? a) - (places.get(nodes[b]) ?? b));
 }
 
-const PERIOD = 1600;
+function wayOf(paper: Paper, values: number[]): string {
+  return values.map((value, i) => `${i ? "L" : "M"}${paper.x.place(i).toFixed(1)} ${paper.y.place(value).toFixed(1)}`).join("");
+}
 
 function Shape({ paper, values, still }: { paper: Paper; values: number[]; still: boolean }) {
-  const ref = useRef<SVGGElement>(null);
-  const { x, y, look } = paper;
-  useEffect(() => {
-    if (still) {
-      ref.current?.removeAttribute("transform");
-      return undefined;
-    }
-    let frame = 0;
-    const zero = y.place(0);
-    const move = (time: number) => {
-      const size = Math.cos((2 * Math.PI * time) / PERIOD);
-      ref.current?.setAttribute("transform", `matrix(1 0 0 ${size.toFixed(4)} 0 ${(zero * (1 - size)).toFixed(2)})`);
-      frame = requestAnimationFrame(move);
-    };
-    frame = requestAnimationFrame(move);
-    return () => cancelAnimationFrame(frame);
-  }, [still, paper]);
-  const path = values.map((value, i) => `${i ? "L" : "M"}${x.place(i).toFixed(1)} ${y.place(value).toFixed(1)}`).join("");
+  const { y, look } = paper;
+  const bars = values.map((value, i) => `M${paper.x.place(i).toFixed(1)} ${y.place(0)}V${y.place(value).toFixed(1)}`).join("");
   return (
     <>
-      <line x1={paper.left} x2={paper.left + paper.width} y1={y.place(0)} y2={y.place(0)} stroke={look.faint} />
-      <path d={path} fill="none" stroke={look.colours[0]} strokeOpacity={0.25} strokeWidth={1.5} />
-      <g ref={ref}>
-        <path d={path} fill="none" stroke={look.colours[0]} strokeWidth={2} vectorEffect="non-scaling-stroke" />
-        {values.map((value, i) => <line key={i} x1={x.place(i)} x2={x.place(i)} y1={y.place(0)} y2={y.place(value)} stroke={look.colours[0]} strokeWidth={6} strokeOpacity={0.65} />)}
-      </g>
+      <path d={wayOf(paper, values)} fill="none" stroke={look.colours[0]} strokeWidth={2} strokeOpacity={still ? 1 : 0.3} />
+      {still && <path d={bars} stroke={look.colours[0]} strokeWidth={6} strokeOpacity={0.65} />}
     </>
+  );
+}
+
+/** The shape in a layer of its own, which the style sheet swings about zero: no script runs while it moves. */
+function Swinging({ paper, values }: { paper: Paper; values: number[] }) {
+  const { y, look, left, width, top, height } = paper;
+  const bars = values.map((value, i) => `M${paper.x.place(i).toFixed(1)} ${y.place(0)}V${y.place(value).toFixed(1)}`).join("");
+  return (
+    <svg className="swinging" aria-hidden="true" width={left + width} height={top + height} style={{ transformOrigin: `0 ${y.place(0)}px` }}>
+      <path d={wayOf(paper, values)} fill="none" stroke={look.colours[0]} strokeWidth={2} />
+      <path d={bars} stroke={look.colours[0]} strokeWidth={6} strokeOpacity={0.65} />
+    </svg>
   );
 }
 

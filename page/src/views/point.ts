@@ -5,3 +5,8 @@ import type { Point } from "../state/store";
 export function pointOf(point: Point): Settings {
   return Object.fromEntries(Object.entries(point).filter(([, value]) => value !== null));
 }
+
+/** The gear alone. */
+export function gearOf({ gear }: Point): Settings {
+  return pointOf({ gear, torque: null, speed: null });
+}
