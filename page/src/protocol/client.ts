@@ -23,9 +23,20 @@ export function keepToken(token: string): void {
   sessionStorage.setItem(TOKEN, token);
 }
 
+const SESSION_KEY = "torsional.session";
+
+/** Tells this tab's requests and jobs from those of others; the same after a reload, so that they are found again. */
+function session(): string {
+  const kept = sessionStorage.getItem(SESSION_KEY);
+  if (kept) return kept;
+  const made = crypto.getRandomValues(new Uint32Array(4)).join("-");
+  sessionStorage.setItem(SESSION_KEY, made);
+  return made;
+}
+
 function headers(more: Record<string, string>): Record<string, string> {
   const token = sessionStorage.getItem(TOKEN);
-  return token ? { ...more, Authorization: `Bearer ${token}` } : more;
+  return { ...more, "X-Session": session(), ...(token ? { Authorization: `Bearer ${token}` } : {}) };
 }
 
 async function reached(path: string, request: RequestInit): Promise<Response> {
@@ -44,15 +55,15 @@ async function refusal(response: Response): Promise<Error> {
   return new Refused(response.status, faults);
 }
 
-async function sent(method: string, path: string, body?: unknown, signal?: AbortSignal, more = {}): Promise<Response> {
-  const typed = method === "GET" ? more : { ...more, "Content-Type": "application/json" };
+async function sent(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<Response> {
+  const typed: Record<string, string> = method === "GET" ? {} : { "Content-Type": "application/json" };
   const request = { method, headers: headers(typed), body: body === undefined ? undefined : JSON.stringify(body), signal };
   const response = await reached(path, request);
   if (!response.ok) throw await refusal(response);
   return response;
 }
 
-/** The first line of a frame's life: one answer to each ask, in their order. */
+/** One answer to each ask, in their order. */
 export async function answers(design: Design, ask: Ask[], signal?: AbortSignal): Promise<Answer<object>[]> {
   const response = await sent("POST", "api/answer", { design, ask }, signal);
   return (decodeFrame(await response.arrayBuffer()) as { answers: Answer<object>[] }).answers;
@@ -114,17 +125,6 @@ export async function front(index: number): Promise<unknown> {
   return decodeFrame(await (await sent("GET", `api/fronts/${index}`)).arrayBuffer());
 }
 
-const SESSION_KEY = "torsional.session";
-
-/** Tells this tab's jobs from those of others; the same after a reload, so that they are found again. */
-function session(): string {
-  const kept = sessionStorage.getItem(SESSION_KEY);
-  if (kept) return kept;
-  const made = crypto.getRandomValues(new Uint32Array(4)).join("-");
-  sessionStorage.setItem(SESSION_KEY, made);
-  return made;
-}
-
 export type JobKind = "branches" | "region" | "scenario";
 
 export async function beginJob(design: Design, kind: JobKind, settings: Settings): Promise<string> {
@@ -132,24 +132,20 @@ export async function beginJob(design: Design, kind: JobKind, settings: Settings
   return ((await (await sent("POST", "api/jobs", body)).json()) as { job: string }).job;
 }
 
-function mine(): { [header: string]: string } {
-  return { "X-Session": session() };
-}
-
 export async function jobState(job: string): Promise<JobState> {
-  return (await sent("GET", `api/jobs/${job}`, undefined, undefined, mine())).json() as Promise<JobState>;
+  return (await sent("GET", `api/jobs/${job}`)).json() as Promise<JobState>;
 }
 
 export async function jobResult(job: string): Promise<unknown> {
-  return decodeFrame(await (await sent("GET", `api/jobs/${job}/result`, undefined, undefined, mine())).arrayBuffer());
+  return decodeFrame(await (await sent("GET", `api/jobs/${job}/result`)).arrayBuffer());
 }
 
 /** What a job gave as a file. */
 export async function exportJob(job: string, kind: JobKind, format: Format): Promise<Download> {
-  const found = await download(await sent("GET", `api/jobs/${job}/export/${format}`, undefined, undefined, mine()), "");
+  const found = await download(await sent("GET", `api/jobs/${job}/export/${format}`), "");
   return { ...found, name: `${kind}.${format}` };
 }
 
 export async function cancelJob(job: string): Promise<void> {
-  await sent("DELETE", `api/jobs/${job}`, {}, undefined, mine());
+  await sent("DELETE", `api/jobs/${job}`, {});
 }
