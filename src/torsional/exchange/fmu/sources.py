@@ -57,7 +57,7 @@ class Image:
 
 def sources_of(unit: Unit, version: str) -> dict[str, str]:
     """The files of the sources by name."""
-    kept = ("runtime.h", "core.h", f"fmi{version[0]}.h")
+    kept = ("runtime.h", "core.h", "states.h", f"fmi{version[0]}.h")
     told = {name: resources.files("torsional.exchange").joinpath("sources", name).read_text("utf-8") for name in kept}
     told["model.h"] = _model(unit)
     return told
@@ -71,7 +71,8 @@ def token_of(sources: Mapping[str, str], version: str) -> str:
 
 def entry_of(sources: Mapping[str, str], token: str) -> str:
     """The file that is compiled."""
-    ordered = sorted(sources, key=lambda name: ("runtime.h", "model.h", "core.h").index(name) if name[0] != "f" else 3)
+    face = next(name for name in sources if name.startswith("fmi"))  # which takes states.h itself
+    ordered = ("runtime.h", "model.h", "core.h", face)
     return f'#define TOKEN "{token}"\n' + "".join(f'#include "{name}"\n' for name in ordered)
 
 

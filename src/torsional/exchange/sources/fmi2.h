@@ -154,62 +154,11 @@ NO_VALUES(Integer, fmi2Integer)
 NO_VALUES(Boolean, fmi2Boolean)
 NO_VALUES(String, fmi2String)
 
-typedef struct {
-    bool begun;
-    double start;
-    char bytes[STATE_BYTES];
-} Kept;
-
-EXPORTED fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    Kept *kept = *state ? *state : malloc(sizeof(Kept));
-    if (!kept) return told(OF(c), fmi2Error, "there is not enough memory");
-    kept->begun = OF(c)->begun;
-    kept->start = OF(c)->start;
-    machine_save(OF(c)->machine, kept->bytes);
-    *state = kept;
-    return fmi2OK;
-}
-
-EXPORTED fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
-{
-    const Kept *kept = state;
-    if (!kept) return told(OF(c), fmi2Error, "no state is given");
-    OF(c)->begun = kept->begun;
-    OF(c)->start = kept->start;
-    machine_load(OF(c)->machine, kept->bytes);
-    return fmi2OK;
-}
-
-EXPORTED fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    (void)c;
-    free(*state);
-    *state = NULL;
-    return fmi2OK;
-}
-
-EXPORTED fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
-{
-    (void)c, (void)state;
-    *size = sizeof(Kept);
-    return fmi2OK;
-}
-
-EXPORTED fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
-{
-    if (size < sizeof(Kept)) return told(OF(c), fmi2Error, "too little room for the state");
-    memcpy(bytes, state, sizeof(Kept));
-    return fmi2OK;
-}
-
-EXPORTED fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
-{
-    if (size != sizeof(Kept)) return told(OF(c), fmi2Error, "these are not the bytes of a state");
-    if (!*state && !(*state = malloc(sizeof(Kept)))) return told(OF(c), fmi2Error, "there is not enough memory");
-    memcpy(*state, bytes, sizeof(Kept));
-    return fmi2OK;
-}
+#define FMI(name) fmi2##name
+#define STATE(before, after) fmi2##before##FMUstate##after
+#define OWNER fmi2Component
+#define DESERIALIZE fmi2DeSerializeFMUstate
+#include "states.h"
 
 EXPORTED fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference z[], size_t nz,
                                                  const fmi2ValueReference v[], size_t nv, const fmi2Real dv[],

@@ -223,62 +223,11 @@ REFUSED(GetNumberOfVariableDependencies, NO_DEPENDENCIES, fmi3Instance c, fmi3Va
 REFUSED(GetVariableDependencies, NO_DEPENDENCIES, fmi3Instance c, fmi3ValueReference vr, size_t of[],
         fmi3ValueReference on[], size_t at[], fmi3DependencyKind kinds[], size_t n)
 
-typedef struct {
-    bool begun;
-    double start;
-    char bytes[STATE_BYTES];
-} Kept;
-
-EXPORTED fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
-{
-    Kept *kept = *state ? *state : malloc(sizeof(Kept));
-    if (!kept) return told(OF(c), fmi3Error, "there is not enough memory");
-    kept->begun = OF(c)->begun;
-    kept->start = OF(c)->start;
-    machine_save(OF(c)->machine, kept->bytes);
-    *state = kept;
-    return fmi3OK;
-}
-
-EXPORTED fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
-{
-    const Kept *kept = state;
-    if (!kept) return told(OF(c), fmi3Error, "no state is given");
-    OF(c)->begun = kept->begun;
-    OF(c)->start = kept->start;
-    machine_load(OF(c)->machine, kept->bytes);
-    return fmi3OK;
-}
-
-EXPORTED fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state)
-{
-    (void)c;
-    free(*state);
-    *state = NULL;
-    return fmi3OK;
-}
-
-EXPORTED fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size)
-{
-    (void)c, (void)state;
-    *size = sizeof(Kept);
-    return fmi3OK;
-}
-
-EXPORTED fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size)
-{
-    if (size < sizeof(Kept)) return told(OF(c), fmi3Error, "too little room for the state");
-    memcpy(bytes, state, sizeof(Kept));
-    return fmi3OK;
-}
-
-EXPORTED fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state)
-{
-    if (size != sizeof(Kept)) return told(OF(c), fmi3Error, "these are not the bytes of a state");
-    if (!*state && !(*state = malloc(sizeof(Kept)))) return told(OF(c), fmi3Error, "there is not enough memory");
-    memcpy(*state, bytes, sizeof(Kept));
-    return fmi3OK;
-}
+#define FMI(name) fmi3##name
+#define STATE(before, after) fmi3##before##FMUState##after
+#define OWNER fmi3Instance
+#define DESERIALIZE fmi3DeserializeFMUState
+#include "states.h"
 
 #define NO_DERIVATIVES "derivatives are not provided"
 REFUSED(GetDirectionalDerivative, NO_DERIVATIVES, fmi3Instance c, const fmi3ValueReference z[], size_t nz,
