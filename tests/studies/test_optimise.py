@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import signal
@@ -276,6 +277,31 @@ def test_gradients_make_a_design_better_and_keep_its_limits() -> None:
     assert float(after["low_speed"]) < 0.9 * float(before["low_speed"])  # type: ignore[arg-type]
     for name, limit in task.limits.items():
         assert limit.beyond(np.array(float(after[name]))) <= 0  # type: ignore[arg-type]
+
+
+def test_designs_beyond_limits_are_worse_than_any_within() -> None:
+    """A softer flywheel is better and swings farther: better designs beyond the limit order themselves by how far."""
+    task = concept("dmf")
+    start = task.nominal_share
+    assert start is not None
+    lowered = (np.arange(start.size) == list(task.axes).index("absorber.stiffness")).astype(float)
+    soft, softer = start - 0.2 * lowered, start - 0.4 * lowered
+    designs = (start, soft, softer)
+    told = [figures(task, shares, "low_speed", "travel") for shares in designs]
+    travel = [each["travel"] for each in told]
+    assert told[2]["low_speed"] < told[0]["low_speed"] and travel == sorted(travel)
+    tight = dataclasses.replace(task, limits={"travel": Limit(most=0.5 * (travel[0] + travel[1]))})
+    refinement = Refinement(tight, {"low_speed": 1.0}, tight.batch())
+    aims = [refinement._aim(shares) for shares in designs]
+    assert aims[0] == pytest.approx(told[0]["low_speed"], rel=1e-9) and refinement.within(start)
+    assert aims[0] < aims[1] < aims[2] < np.inf
+
+
+def figures(task: Task, shares: Any, *names: str) -> dict[str, float]:
+    """Some criteria of a design."""
+    values = {name: column[0] for name, column in task.columns(shares[None]).items()}
+    run = task.run.of(names)  # type: ignore[union-attr]
+    return {name: float(value) for name, value in run(changed(task.build, values)).items()}  # type: ignore[arg-type]
 
 
 def test_what_has_no_exact_gradients_says_so() -> None:
