@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from numba.core.event import end_event, start_event
@@ -240,6 +241,32 @@ def test_schema_is_json_and_names_the_blocks(torsional: Run) -> None:
     schema = json.loads(Path("s.json").read_text(encoding="utf-8"))
     assert schema == json.loads(printed.out)
     assert {"engine", "absorber", "clutch", "gearbox"} <= set(schema["properties"])
+
+
+@pytest.mark.parametrize(
+    ("kind", "files"),
+    [
+        ("model", "examples/truck_*.yaml"),
+        ("scenario", "examples/scenarios/*.yaml"),
+        ("sweep", "examples/plans/*.yaml"),
+        ("optimise", "examples/plans/*.yaml"),
+        ("identify", "examples/plans/*.yaml"),
+    ],
+)
+def test_schemas_take_the_shipped_files_and_no_others(torsional: Run, kind: str, files: str) -> None:
+    validator = jsonschema.Draft202012Validator(json.loads(torsional("schema", kind).out))
+    key = "torsional" if kind == "model" else f"torsional_{kind}"
+    documents = [YAML(typ="safe").load(path.read_text(encoding="utf-8")) for path in sorted(ROOT.glob(files))]
+    mine = [document for document in documents if key in document]
+    assert mine and all(validator.is_valid(document) for document in mine)
+    assert not any(validator.is_valid({**document, "oder": 3}) for document in mine)
+    assert not any(validator.is_valid(document) for document in documents if key not in document)
+
+
+def test_schemas_of_other_files(torsional: Run) -> None:
+    assert "pulses_per_turn" in json.loads(torsional("schema", "mapping").out)["$defs"]["ChannelBlock"]["properties"]
+    refused = torsional("schema", "mappings", "-o", "s.json")
+    assert refused.code == 2 and "did you mean 'mapping'?" in refused.err and not Path("s.json").exists()
 
 
 def test_report_writes_one_page(torsional: Run) -> None:

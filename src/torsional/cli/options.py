@@ -190,6 +190,9 @@ Page = Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The 
 NewFile = Annotated[Path | None, taking("--output", "-o", metavar="FILE", help="The model file to write.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")]
 Kind = Annotated[str, typer.Argument(metavar="[KIND]", help="truck or line.")]
+FileKind = Annotated[
+    str, typer.Argument(metavar="[KIND]", help="Kind of file: model, scenario, mapping, sweep, optimise or identify.")
+]
 Compare = Annotated[
     list[Path] | None,
     taking("--compare", "-c", metavar="OTHER", help="A model to set beside it; may be repeated."),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -192,3 +192,8 @@ KINDS: dict[str, type[Scenario]] = {
     "traction_loss": TractionLoss,
     "idle_pulse": IdlePulse,
 }
+AnyScenario: TypeAlias = Annotated[
+    EngineStart | EngineStop | TipIn | TipOut | ClutchEngagement | GearShift | Stall | TractionLoss | IdlePulse,
+    Field(discriminator="scenario"),
+]
+"""What a scenario file may be."""

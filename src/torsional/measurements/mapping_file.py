@@ -12,7 +12,7 @@ from torsional.errors import ModelError
 from torsional.files.faults import told_of
 from torsional.files.reader import read_tree
 from torsional.files.schema.fields import Block, Node, Quantity, only_version
-from torsional.files.schema.published import published
+from torsional.files.schema.published import schema_of
 from torsional.units import QUANTITIES
 
 VERSION, KEY = 1, "torsional_mapping"
@@ -100,7 +100,7 @@ def load_mapping(path: str | os.PathLike[str]) -> MappingFile:
 
 def mapping_schema() -> dict[str, Any]:
     """The JSON Schema of mapping files, for editors."""
-    return published(MappingFile.model_json_schema())
+    return schema_of(MappingFile, "torsional mapping file")
 
 
 def quantity_of(block: ChannelBlock) -> str:

@@ -42,8 +42,8 @@ def workbench(
 
 
 @app.command()
-def schema(output: o.Output = None) -> Job:
-    """JSON Schema of model files, for editors."""
+def schema(kind: o.FileKind = "model", output: o.Output = None) -> Job:
+    """JSON Schema of model files, or of another kind, for editors."""
     return job("starting", what="schema", **locals())
 
 

@@ -14,7 +14,7 @@ from torsional.files.schema.fields import Block, Name, Node, Quantity, Ratio, Sp
 from torsional.files.schema.line import Clutch, Crankshaft, Driveline, Gearbox, VehicleBlock
 from torsional.files.schema.making import Making
 from torsional.files.schema.parts import Part
-from torsional.files.schema.published import published
+from torsional.files.schema.published import schema_of
 
 VERSION = 1
 _TITLE = 200
@@ -100,6 +100,4 @@ class ModelFile(Block):
 
 def json_schema() -> dict[str, Any]:
     """The schema of model files as JSON Schema, draft 2020-12, for editors and other tools."""
-    schema = ModelFile.model_json_schema(mode="validation")
-    named = {**schema, "title": "torsional model file"}
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **published(named)}
+    return schema_of(ModelFile, "torsional model file")

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from pydantic import TypeAdapter
+
 from torsional import units
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 _TYPICAL = {
     "inertia": 1.2,
@@ -21,6 +25,12 @@ _TYPICAL = {
     "shear_modulus": 80e9,
     "density": 7850.0,
 }
+
+
+def schema_of(kind: Any, title: str) -> dict[str, Any]:
+    """The JSON Schema, draft 2020-12, of the files that a block reads, or one of several."""
+    schema = TypeAdapter(kind).json_schema(mode="validation")
+    return {"$schema": DRAFT, **published({**schema, "title": title})}
 
 
 def published(schema: dict[str, Any]) -> dict[str, Any]:
