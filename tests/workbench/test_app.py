@@ -6,6 +6,7 @@ import asyncio
 import csv
 import io
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -317,11 +318,12 @@ def test_designs_side_by_side_and_no_formulas(ask: Ask) -> None:
 
 
 def ended(ask: Ask, job: str) -> Any:
-    """The state of a job when it has ended."""
+    """The state of a job when it has ended; it needs the processor that asking takes."""
     while True:
         state = ask("GET", f"/api/jobs/{job}", None, [SESSION]).document
         if state["state"] not in ("waiting", "running"):
             return state
+        time.sleep(0.05)
 
 
 def test_a_scenario_is_run_in_the_background(ask: Ask) -> None:

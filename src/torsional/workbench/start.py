@@ -33,7 +33,8 @@ LOOPBACK = ("127.0.0.1", "localhost", "::1")
 QUICK, SLOW = 15.0, 180.0
 """Time [s] for an answer, and for a picture or a report."""
 NICE = 5
-CONNECTIONS = 256
+CONNECTIONS, KEPT = 256, 75
+"""How many connections there may be, and how long [s] one is kept for the next request."""
 TOKEN = 12
 """Letters that a token has at least."""
 WARM = ("model", "modes", "interference", "response", "map", "characteristic", "criteria")
@@ -88,6 +89,7 @@ def served(asked: Asked, listening: Callable[[str], None]) -> None:
             lifespan="on",
             ws="none",
             limit_concurrency=CONNECTIONS,
+            timeout_keep_alive=KEPT,
             timeout_graceful_shutdown=1,
             proxy_headers=False,
         )
@@ -114,7 +116,8 @@ def bound(host: str, port: int) -> socket.socket:
     except (OSError, UnicodeError):
         remedy = f"leave it out for this machine alone ({HOST}), or name an address of this machine"
         raise ModelError("there is no such host", where="--host", found=repr(host), remedy=remedy) from None
-    listener = socket.socket(family, socket.SOCK_STREAM)
+    # asyncio turns Nagle's algorithm off for sockets that name their protocol alone; with it an answer waits 40 ms
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         if os.name == "posix":  # elsewhere it would let two servers share a port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
