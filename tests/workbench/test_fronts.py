@@ -11,7 +11,7 @@ import torsional
 from torsional.errors import ModelError
 from torsional.results import labelled, save_results
 from torsional.studies.optimise.optimise import optimise
-from torsional.studies.optimise.task import Method
+from torsional.studies.optimise.task import Limit, Method
 from torsional.workbench.fronts import MOST, front_of
 
 
@@ -25,7 +25,8 @@ def searched(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return {"soft": clutch + dmf, "stiff": 1e9 / (clutch * dmf)}
 
     ends = {"clutch.stiffness": (12e3, 40e3), "absorber.stiffness": (8e3, 20e3)}
-    found = optimise(truck, ends, figures, ["soft", "stiff"], method=Method(8, 3))
+    limits = {"soft": Limit(most=50e3)}
+    found = optimise(truck, ends, figures, ["soft", "stiff"], limits=limits, method=Method(8, 3))
     path = tmp_path_factory.mktemp("front") / "small.nc"
     save_results(found, path)
     return path
@@ -38,6 +39,7 @@ def test_a_search_is_told_design_by_design(searched: Path) -> None:
     assert (found["parameters"][0]["values"] == data["clutch.stiffness"].values).all()
     soft = next(c for c in found["criteria"] if c["name"] == "soft")
     assert (soft["values"] == data.soft.values).all() and soft["better"] == "less"
+    assert [soft["limits"], found["criteria"][1 - found["criteria"].index(soft)]["limits"]] == [[None, 50e3], None]
     assert found["on_front"].sum() == data.on_front.values.sum() > 1 and found["role"][0] == "nominal"
 
 

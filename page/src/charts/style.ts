@@ -1,7 +1,7 @@
 // One look for every picture, in light and dark: Okabe and Ito's palette, which colour-blind eyes tell apart.
 
 import { useEffect, useState } from "react";
-import { useStore } from "../state/store";
+import { current, useStore } from "../state/store";
 
 export interface Look {
   dark: boolean;
@@ -45,6 +45,12 @@ function useMedia(query: string): boolean {
     return () => media.removeEventListener("change", heard);
   }, [query]);
   return matches;
+}
+
+/** The look at this moment, outside of what is drawn by React. */
+export function currentLook(): Look {
+  const { theme } = current();
+  return theme === "dark" || (theme === "system" && window.matchMedia("(prefers-color-scheme: dark)").matches) ? DARK : LIGHT;
 }
 
 export function useLook(): Look {

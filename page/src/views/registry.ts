@@ -6,10 +6,11 @@ import { COMPARISON } from "./comparison/view";
 import { INTERFERENCE } from "./interference";
 import { MAP } from "./map";
 import { MODES } from "./modes";
+import { PARETO } from "./pareto/view";
 import { RESPONSE } from "./response";
 import type { View } from "./view";
 
-export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, BRANCHES, COMPARISON];
+export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, BRANCHES, COMPARISON, PARETO];
 
 /** A view by its name; the first one for a name of an older link. */
 export function viewNamed(name: string): View {

@@ -25,8 +25,8 @@ Answer = dict[str, Any]
 def front_of(path: str | Path) -> Answer:
     """What a results file of `sweep` or `optimise` holds, design by design.
 
-    ``parameters`` [{path, label, values}] and ``criteria`` [{name, label, quantity, better, objective, values}] with
-    one figure a design; ``on_front`` and ``within`` (1 or 0), None where nothing tells them; ``role`` (texts).
+    ``parameters`` [{path, label, values}] and ``criteria`` [{name, label, quantity, better, objective, limits, values}]
+    with one figure a design, ``limits`` [least, most] or None where there are none; ``on_front`` and ``within`` (1 or 0), None where nothing tells them; ``role`` (texts).
     ModelError for a file that holds no designs.
     """
     data = load_results(path)
@@ -82,6 +82,7 @@ def _criteria(designs: xr.Dataset) -> Iterator[Answer]:
     """Figures of which every design has one."""
     objectives = json.loads(designs.attrs.get("objectives", "[]"))
     maximised = json.loads(designs.attrs.get("maximised", "[]"))
+    limits = json.loads(designs.attrs.get("limits", "{}"))
     for name, values in designs.data_vars.items():
         single = values.size == designs.sizes["_designs"]
         if str(name) in _OWN or not single or values.dtype.kind not in "iuf":
@@ -92,6 +93,7 @@ def _criteria(designs: xr.Dataset) -> Iterator[Answer]:
             "quantity": str(values.attrs.get("quantity", "number")),
             "better": "more" if name in maximised else "less",
             "objective": name in objectives,
+            "limits": limits.get(name),
             "values": values.values.reshape(-1).astype(float),
         }
 
