@@ -26,8 +26,8 @@ def front_of(path: str | Path) -> Answer:
     """What a results file of `sweep` or `optimise` holds, design by design.
 
     ``parameters`` [{path, label, values}] and ``criteria`` [{name, label, quantity, better, objective, limits, values}]
-    with one figure a design, ``limits`` [least, most] or None where there are none; ``on_front`` and ``within`` (1 or 0), None where nothing tells them; ``role`` (texts).
-    ModelError for a file that holds no designs.
+    with one figure a design, ``limits`` [least, most] or None where there are none; ``on_front`` and ``within`` (1, 0),
+    None where nothing tells them; ``role`` (texts).  ModelError for a file that holds no designs.
     """
     data = load_results(path)
     dims = _design_dims(data)
