@@ -119,6 +119,11 @@ def test_the_page_and_its_files(ask: Ask) -> None:
     assert plain.headers["content-type"].startswith("text/javascript")
 
 
+def test_the_head_of_the_page_alone(ask: Ask) -> None:
+    assert ask("HEAD", "/").status == 200
+    assert ask("HEAD", "/nothing").status == 404
+
+
 @pytest.mark.parametrize(
     "path",
     [
@@ -283,10 +288,8 @@ VIEWS = ("model", "modes", "interference", "response", "map", "characteristic")
 @pytest.mark.parametrize("view", VIEWS)
 def test_every_picture_is_exported(ask: Ask, view: str) -> None:
     asked = {"view": view, **({"gears": ["12"]} if view == "map" else {})}
-    png = ask("POST", "/api/export", {"design": NAMED, "ask": asked, "format": "png"})
-    assert (png.headers["content-type"], png.body[:4]) == ("image/png", b"\x89PNG")
-    assert png.headers["content-disposition"] == f'attachment; filename="{view}.png"'
     svg = ask("POST", "/api/export", {"design": NAMED, "ask": asked, "format": "svg", "dark": True})
+    assert svg.headers["content-disposition"] == f'attachment; filename="{view}.svg"'
     assert b"<svg" in svg.body and b"<script" not in svg.body and b"#15191e" in svg.body
 
 
@@ -305,13 +308,21 @@ def test_designs_side_by_side_and_no_formulas(ask: Ask) -> None:
     rows = list(csv.DictReader(io.StringIO(got.body.decode("utf-8-sig"))))
     assert {row["variant"] for row in rows} == {"'=cmd()", "softer"}
     png = ask("POST", "/api/export", {"variants": variants, "ask": {"view": "response"}, "format": "png"})
-    assert png.body[:4] == b"\x89PNG"
+    assert (png.headers["content-type"], png.body[:4]) == ("image/png", b"\x89PNG")
     both = ask("POST", "/api/export", {"variants": variants, "ask": {"view": "model"}, "format": "png"})
     assert told(both)["problem"] == "this view shows one design at a time"
     assert ask("POST", "/api/export", {"ask": {"view": "modes"}, "format": "png"}).status == 400
     assert ask("POST", "/api/export", {"design": NAMED, "ask": {"view": "modes"}, "format": "exe"}).status == 400
     none = ask("POST", "/api/export", {"design": NAMED, "ask": {"view": "criteria"}, "format": "png"})
     assert told(none)["problem"] == "there is no picture of this view"
+
+
+@pytest.mark.full
+def test_the_report_is_that_of_the_command(ask: Ask) -> None:
+    variants = [{"name": SCRIPT, "design": NAMED}, {"name": "shipped", "design": example("truck")}]
+    got = ask("POST", "/api/report", {"variants": variants})
+    assert got.headers["content-disposition"] == 'attachment; filename="report.html"'
+    assert b"&lt;script&gt;" in got.body and b"<script" not in got.body
 
 
 # --- jobs ---

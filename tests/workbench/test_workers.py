@@ -127,6 +127,24 @@ def test_what_waits_altogether_is_bounded(tmp_path: Path) -> None:
     soon(asked())
 
 
+def test_nobody_waits_for_ever(tmp_path: Path) -> None:
+    async def asked() -> None:
+        hold = tmp_path / "hold"
+        async with workers(patience=0.2, limit=0.1) as some:
+            some._limit = 30.0  # of the one that holds the process
+            holding = asyncio.ensure_future(some.answer(("held", (str(hold),)), "a"))
+            await until(hold.exists)
+            some._limit = 0.1
+            told = await refusal(some.answer(("echoed", (1,)), "b"))
+            assert (told.status, told.errors[0]["problem"]) == (429, "the server is at work on other things")
+            hold.unlink()
+            await holding
+            some._limit = 30.0
+            assert await some.answer(("echoed", (2,)), "b") == 2
+
+    soon(asked())
+
+
 def test_who_gives_up_waiting_is_not_served(tmp_path: Path) -> None:
     async def asked() -> None:
         hold, trace = tmp_path / "hold", tmp_path / "trace"

@@ -151,7 +151,7 @@ def _working(app: FastAPI, service: Service) -> None:
 def _showing(app: FastAPI, service: Service) -> None:
     """The page itself, by the names of its files alone."""
 
-    @app.get("/{path:path}")
+    @app.api_route("/{path:path}", methods=["GET", "HEAD"])
     async def page(request: Request) -> Response:
         file = service.page.get(request.scope["path"])
         if file is None:

@@ -20,6 +20,8 @@ from torsional.workbench.refusals import RefusedError, faults, refused
 
 WAITING, OWN = 64, 8
 """How many requests may wait altogether, and how many of one session."""
+PATIENCE = 60.0
+"""Time [s] that a request waits for its turn."""
 BEGINNING = 600.0
 """Time [s] that a process may take to begin: it may have to compile."""
 MEMORY = 4_000_000_000
@@ -50,11 +52,12 @@ class Workers:
         first: Task | None = None,
         *,
         nice: int = 0,
+        patience: float = PATIENCE,
         waiting: int = WAITING,
         own: int = OWN,
     ) -> None:
         self._work, self._count, self._limit, self._first = work, count, limit, first
-        self._nice, self._most, self._own = nice, waiting, own
+        self._nice, self._patience, self._most, self._own = nice, patience, waiting, own
         self._queues: OrderedDict[str, deque[_Ticket]] = OrderedDict()
         self._idle: list[Member[Task]] = []
         self._all: list[Member[Task]] = []
@@ -93,7 +96,9 @@ class Workers:
         self._queues[session] = queue
         self._hand_out()
         try:
-            return await ticket.answer
+            return await asyncio.wait_for(ticket.answer, self._patience + self._limit)
+        except TimeoutError:
+            raise refused(429, "the server is at work on other things", remedy="ask again") from None
         finally:
             self._forget(session, ticket)
 

@@ -16,6 +16,7 @@ from torsional.quantities import acceleration, swing
 from torsional.quantities.branches import bifurcation_points, coexisting, pieces
 from torsional.solvers.periodic import model_response
 from torsional.solvers.run_up import run_up_response
+from torsional.units import show
 from torsional.workbench.background.asking import Found, Long, Name, Progress, Range, span_of
 from torsional.workbench.fields import words
 from torsional.workbench.views.asking import Answer, Number, main_order, reached
@@ -62,7 +63,9 @@ class Branches(Long):
             "coexisting": [{"speed": span, "branches": here} for span, here in coexisting(data)],
             "linear": _linear(model, gear, place, torque, (low, high), orders),
         }
-        return Found(content, lambda: _picture(data, place, orders), _table(data, place))
+        loaded = "full load" if torque is None else f"mean torque {show(torque, 'torque')}"
+        heading = f"{model.name}{f', gear {gear}' if gear else ''}, {loaded}"
+        return Found(content, lambda: _picture(data, place, orders, heading), _table(data, place))
 
     def _signal(self, data: xr.Dataset) -> tuple[str, xr.DataArray]:
         """The place, and its complex orders along the points."""
@@ -132,12 +135,11 @@ def _linear(
     return {"speed": speeds, "value": {f"{n:g}": np.abs(signal.sel(order=n).values) for n in known}}
 
 
-def _picture(data: xr.Dataset, place: str, orders: list[float]) -> Figure:
+def _picture(data: xr.Dataset, place: str, orders: list[float], heading: str) -> Figure:
     from torsional.plots import plot_periodic
 
     elements = [place] if place in data.element.values else []
     nodes = [] if elements else [place]
-    heading = str(data.attrs.get("model", ""))
     return plot_periodic(data, [*orders, "swing"], elements=elements, nodes=nodes, heading=heading)
 
 
