@@ -43,3 +43,17 @@ export function scaledText(text: string, factor: number): string | null {
   if (matched === null) return null;
   return told(Number(matched[1]) * factor, 6) + matched[2];
 }
+
+/** A typed value one step up or down: zero, which has no per cents, goes up by a hundredth of its unit. */
+export function steppedText(text: string, factor: number): string | null {
+  const matched = NUMBER.exec(text);
+  if (matched === null || Number(matched[1]) !== 0) return scaledText(text, factor);
+  return factor > 1 ? `0.01${matched[2]}` : null;
+}
+
+/** A count one step up or down, by ten where the step is a large one; null for a text that is no whole number. */
+export function countedText(text: string, factor: number): string | null {
+  if (!/^\s*[+-]?\d+\s*$/.test(text)) return null;
+  const step = Math.abs(Math.log(factor)) > 0.05 ? 10 : 1;
+  return String(Number(text) + (factor > 1 ? step : -step));
+}

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { begun, changed, redone, replaced, runEnded, undone } from "../src/state/history";
 import { fragment, packed, unpacked } from "../src/state/link";
-import { amount, scaledText, shown, told } from "../src/units";
+import { amount, countedText, scaledText, shown, steppedText, told } from "../src/units";
 
 describe("history", () => {
   it("counts a run of edits in one field as one step", () => {
@@ -68,6 +68,17 @@ describe("units", () => {
     ["-0.5", 2, "-1"],
     [".3kgm²", 0.9, "0.27kgm²"],
   ])("steps %s by %d", (text, factor, stepped) => expect(scaledText(text, factor)).toBe(stepped));
+
+  it.each([
+    ["0.30 kgm²", 1.01, "0.303 kgm²"],
+    ["0 Nm", 1.01, "0.01 Nm"],
+    ["0.0", 1 / 1.01, null],
+    ["full_load", 1.01, null],
+  ])("steps %s by %d from zero too", (text, factor, stepped) => expect(steppedText(text, factor)).toBe(stepped));
+
+  it.each([["4", 1.01, "5"], ["4", 1 / 1.01, "3"], ["20", 1.1, "30"], ["4.5", 1.01, null]])("counts %s by %d", (text, factor, counted) =>
+    expect(countedText(text, factor)).toBe(counted),
+  );
 
   it("steps no text without a number", () => expect(scaledText("full_load", 1.01)).toBeNull());
 

@@ -3,7 +3,7 @@
 import { useEffect, useId, useState } from "react";
 import { answers } from "../protocol/client";
 import { type Absorber, isRefused } from "../protocol/messages";
-import { setValue } from "../state/actions";
+import { chooseValue } from "../state/actions";
 import { current, designOf, useStore } from "../state/store";
 
 /** Those of the server's start for this model; where it can, scaled as studies of absorbers scale them. */
@@ -28,7 +28,7 @@ export function AbsorberChoice() {
   const label = useStore((state) => state.model?.absorber?.label ?? "none");
   const change = useStore((state) => state.history.present.absorber);
   const chosen = found.findIndex(({ block }) => JSON.stringify(block) === JSON.stringify(change));
-  const choose = (index: number) => setValue("absorber", index < 0 ? undefined : found[index].block);
+  const choose = (index: number) => chooseValue("absorber", index < 0 ? undefined : found[index].block);
   return (
     <div className="field absorber">
       <label htmlFor={id}>type</label>

@@ -5,8 +5,8 @@ import { type KeyboardEvent, memo } from "react";
 import { useWidth } from "../charts/size";
 import { type Look, useLook } from "../charts/style";
 import type { ChainLink, ChainNode, ModelAnswer } from "../protocol/messages";
-import { endRun } from "../state/actions";
-import { update, useStore } from "../state/store";
+import { select } from "../state/actions";
+import { useStore } from "../state/store";
 import { amount } from "../units";
 
 const NARROWEST = 44;
@@ -15,6 +15,7 @@ const LEVEL = 16;
 const THICK = 13;
 const TALLEST = 36;
 const MIDDLE = 46;
+const LANE = 12;
 
 interface Place {
   x: number;
@@ -39,11 +40,11 @@ function placesOf(nodes: ChainNode[], width: number): Map<string, Place> {
 
 export function Chain() {
   const model = useStore((state) => state.model);
-  const selected = useStore((state) => state.selected);
-  return model && <Drawing model={model} selected={selected} />;
+  const part = useStore((state) => state.part);
+  return model && <Drawing model={model} chosen={part} />;
 }
 
-const Drawing = memo(function Drawing({ model, selected }: { model: ModelAnswer; selected: string }) {
+const Drawing = memo(function Drawing({ model, chosen }: { model: ModelAnswer; chosen: string }) {
   const look = useLook();
   const units = useStore((state) => state.start?.units ?? {});
   const { nodes, links } = model.chain;
@@ -55,14 +56,14 @@ const Drawing = memo(function Drawing({ model, selected }: { model: ModelAnswer;
   return (
     <div ref={ref} className="chain" role="group" aria-label="The powertrain as a chain of discs and springs">
       <svg width={width} height={height} viewBox={`0 0 ${width} ${height}`}>
-        {links.map((link) => (
-          <Part key={link.name} path={link.path} selected={selected} told={[link.label, link.told].filter(Boolean).join(", ")}>
-            <Link link={link} places={places} colour={colourOf(link, model, look)} look={look} />
+        {links.map((link, i) => (
+          <Part key={link.name} name={link.name} path={pathOf(link, nodes)} chosen={chosen} told={[link.label, link.told].filter(Boolean).join(", ")}>
+            <Link link={link} places={places} colour={colourOf(link, model, look)} look={look} lane={laneOf(links, i)} />
           </Part>
         ))}
         {nodes.map((node) => (
-          <Part key={node.name} path={node.path} selected={selected} told={inertia(node)}>
-            <Disc node={node} place={places.get(node.name)!} lit={node.path.startsWith("absorber")} look={look} />
+          <Part key={node.name} name={node.name} path={node.path} chosen={chosen} told={inertia(node)}>
+            <Disc node={node} place={places.get(node.name)!} lit={node.path.startsWith("absorber")} beside={node.y % 6 > 0} look={look} />
           </Part>
         ))}
       </svg>
@@ -70,54 +71,80 @@ const Drawing = memo(function Drawing({ model, selected }: { model: ModelAnswer;
   );
 });
 
+/** The key path of a link; of one without a path of its own that of the parts it is inside of. */
+function pathOf(link: ChainLink, nodes: ChainNode[]): string {
+  if (link.path) return link.path;
+  const paths = link.nodes.map((name) => nodes.find((node) => node.name === name)?.path ?? "");
+  return paths.every((path) => path === paths[0]) ? paths[0] : "";
+}
+
+/** How many links join the same nodes before this one: they are drawn side by side. */
+function laneOf(links: ChainLink[], index: number): number {
+  const ends = (link: ChainLink) => [...link.nodes].sort().join(" ");
+  return links.slice(0, index).filter((link) => ends(link) === ends(links[index])).length;
+}
+
 function colourOf(link: ChainLink, model: ModelAnswer, look: Look): string {
-  if (link.path.startsWith("absorber")) return look.colours[1];
+  if (pathOf(link, model.chain.nodes).startsWith("absorber")) return look.colours[1];
   return link.name === model.landmarks.clutch ? look.colours[2] : look.ink;
 }
 
 interface PartProps {
+  name: string;
   path: string;
-  selected: string;
+  chosen: string;
   told: string;
   children: React.ReactNode;
 }
 
-function Part({ path, selected, told, children }: PartProps) {
-  const choose = () => {
-    endRun();
-    update({ selected: path });
-  };
+function Part({ name, path, chosen, told, children }: PartProps) {
+  const choose = () => select(path, name);
   const pressed = (event: KeyboardEvent) => {
     if (event.key !== "Enter" && event.key !== " ") return;
     event.preventDefault();
     choose();
   };
   if (!path) return <g><title>{told}</title>{children}</g>;
-  const chosen = selected !== "" && (path === selected || path.startsWith(`${selected}.`));
   return (
-    <g role="button" tabIndex={0} className="part" aria-pressed={chosen} aria-label={told} onClick={choose} onKeyDown={pressed}>
+    <g role="button" tabIndex={0} className="part" aria-pressed={name === chosen} aria-label={told} onClick={choose} onKeyDown={pressed}>
       <title>{told}</title>
       {children}
     </g>
   );
 }
 
-function Disc({ node, place, lit, look }: { node: ChainNode; place: Place; lit: boolean; look: Look }) {
+interface DiscProps {
+  node: ChainNode;
+  place: Place;
+  lit: boolean;
+  /** On a branch above the chain, where a label below would be in the way. */
+  beside: boolean;
+  look: Look;
+}
+
+function Disc({ node, place, lit, beside, look }: DiscProps) {
   const { x, y, half } = place;
-  const bottom = y + TALLEST + 10;
   return (
     <>
       <rect x={x - THICK / 2} y={y - half} width={THICK} height={2 * half} rx={2} fill={lit ? look.colours[1] : look.colours[0]} />
-      <text transform={`translate(${x + 3} ${bottom}) rotate(50)`} fill={look.ink}>{node.label}</text>
+      <text transform={beside ? `translate(${x + THICK} ${y - half + 8})` : `translate(${x + 3} ${y + TALLEST + 10}) rotate(50)`} fill={look.ink}>{node.label}</text>
     </>
   );
 }
 
 const LOOKS: { [kind: string]: string } = { gear: "2 3", damper: "7 4", planets: "6 3 2 3", friction: "2 4" };
 
-function Link({ link, places, colour, look }: { link: ChainLink; places: Map<string, Place>; colour: string; look: Look }) {
+interface LinkProps {
+  link: ChainLink;
+  places: Map<string, Place>;
+  colour: string;
+  look: Look;
+  lane: number;
+}
+
+function Link({ link, places, colour, look, lane }: LinkProps) {
   const [first, ...others] = link.nodes.map((name) => places.get(name)!);
-  const path = others.map((place) => wayOf(first, place, link.kind)).join("");
+  const path = others.map((place) => wayOf(first, place, link.kind, lane)).join("");
   return (
     <>
       <path d={path} className="hit" stroke="transparent" strokeWidth={16} fill="none" />
@@ -128,9 +155,10 @@ function Link({ link, places, colour, look }: { link: ChainLink; places: Map<str
 }
 
 /** A spring is a zigzag, anything else a line; neighbours of neighbours are joined by an arc above the discs. */
-function wayOf(a: Place, b: Place, kind: string): string {
+function wayOf(a: Place, b: Place, kind: string, lane: number): string {
   const far = Math.abs(b.x - a.x) > 1.5 * WIDEST;
   if (far) return `M${a.x} ${a.y}Q${(a.x + b.x) / 2} ${Math.min(a.y, b.y) - 56} ${b.x} ${b.y}`;
+  if (lane) return `M${a.x} ${a.y}v${LANE * lane}L${b.x} ${b.y + LANE * lane}v${-LANE * lane}`;
   if (kind !== "spring") return `M${a.x} ${a.y}L${b.x} ${b.y}`;
   const [dx, dy] = [b.x - a.x, b.y - a.y];
   const length = Math.hypot(dx, dy) || 1;

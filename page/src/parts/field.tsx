@@ -2,8 +2,8 @@
 
 import { type KeyboardEvent, memo, useId, useRef, useState } from "react";
 import type { Fault, Field, Json } from "../protocol/messages";
-import { endRun, setValue } from "../state/actions";
-import { scaledText } from "../units";
+import { chooseValue, endRun, setValue } from "../state/actions";
+import { countedText, scaledText, steppedText } from "../units";
 import { KNOB_HELP, keyFactor } from "./knob";
 import { faultText, limitsOf } from "./limits";
 
@@ -29,7 +29,7 @@ export const FieldRow = memo(function FieldRow({ field, change, fault, marked }:
       <label htmlFor={id}>{field.label}</label>
       <Input field={field} change={change} props={props} />
       {change !== undefined && (
-        <button type="button" className="back" title="Back to the file's value" aria-label={`${field.label}: back to the file's value`} onClick={() => setValue(field.path, undefined)}>
+        <button type="button" className="back" title="Back to the file's value" aria-label={`${field.label}: back to the file's value`} onClick={() => chooseValue(field.path, undefined)}>
           ↶
         </button>
       )}
@@ -49,11 +49,11 @@ function Input({ field, change, props }: InputProps) {
   const text = typeof change === "string" ? change : field.text;
   if (field.kind === "switch") {
     const on = typeof change === "boolean" ? change : field.text === "true";
-    return <input {...props} type="checkbox" checked={on} onChange={(event) => setValue(field.path, event.target.checked)} />;
+    return <input {...props} type="checkbox" checked={on} onChange={(event) => chooseValue(field.path, event.target.checked)} />;
   }
   if (field.kind === "choice") {
     return (
-      <select {...props} value={text} onChange={(event) => setValue(field.path, event.target.value)}>
+      <select {...props} value={text} onChange={(event) => chooseValue(field.path, event.target.value)}>
         {field.choices.includes(text) ? null : <option value={text}>{text || "–"}</option>}
         {field.choices.map((choice) => <option key={choice}>{choice}</option>)}
       </select>
@@ -77,7 +77,7 @@ function Typed({ field, text, props }: { field: Field; text: string; props: Inpu
   };
   const pressed = (event: KeyboardEvent) => {
     const factor = isNumber ? keyFactor(event) : null;
-    const next = factor === null ? null : stepped(text, factor);
+    const next = factor === null ? null : turned(field, text, factor);
     if (event.key === "Enter") endRun();
     if (next === null) return;
     event.preventDefault();
@@ -88,16 +88,18 @@ function Typed({ field, text, props }: { field: Field; text: string; props: Inpu
     <>
       <input {...props} className={isNumber ? "" : "long"} type="text" autoComplete="off" spellCheck={false} value={empty ? "" : text} placeholder={placeholder} title={isNumber ? KNOB_HELP : undefined} onChange={(event) => typed(event.target.value)} onBlur={left} onKeyDown={pressed} />
       {isNumber && field.unit && !/[^\d.eE+\-\s]/.test(text) && <span className="unit">{field.unit}</span>}
-      {isNumber && scaledText(text, 1) !== null && <Slider label={field.label} text={text} put={typed} />}
+      {isNumber && !isCount(field, text) && scaledText(text, 1) !== null && <Slider label={field.label} text={text} put={typed} />}
     </>
   );
 }
 
-/** A value of zero has no per cents: its first step is a hundredth of its unit. */
-function stepped(text: string, factor: number): string | null {
-  const zero = /^\s*0+(\.0*)?(?=\D|$)/.exec(text);
-  if (zero) return factor > 1 ? `0.01${text.slice(zero[0].length)}` : null;
-  return scaledText(text, factor);
+/** Plain whole numbers, as of channels or cylinders, are counts. */
+function isCount(field: Field, text: string): boolean {
+  return field.quantity === null && countedText(text, 1) !== null;
+}
+
+function turned(field: Field, text: string, factor: number): string | null {
+  return isCount(field, text) ? countedText(text, factor) : steppedText(text, factor);
 }
 
 const DOUBLING = 50;

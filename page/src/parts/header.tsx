@@ -31,14 +31,14 @@ function OperatingPoint() {
   return (
     <div className="point" role="group" aria-label="Operating point">
       {model.gears.length > 0 && (
-        <label>
-          <span>Gear</span>
-          <select value={point.gear ?? model.gear} onChange={(event) => setPoint({ gear: event.target.value })}>
+        <span>
+          <label htmlFor="gear">Gear</label>
+          <select id="gear" value={point.gear ?? model.gear} onChange={(event) => setPoint({ gear: event.target.value })}>
             {model.gears.map((gear, i) => <option key={gear} value={gear}>{model.ratios[i] === undefined ? gear : `${gear} (i = ${Number(model.ratios[i].toPrecision(4))})`}</option>)}
           </select>
-        </label>
+        </span>
       )}
-      <NumberInput label="Mean torque" quantity="torque" value={point.torque} otherwise="full load" from={torque ? torque[1] : 100} range={torque} put={(value) => setPoint({ torque: value })} />
+      <NumberInput label="Mean torque" quantity="torque" value={point.torque} otherwise={model.full_load ? "full load" : "default"} from={torque ? torque[1] : 100} range={torque} put={(value) => setPoint({ torque: value })} />
       <NumberInput label="Speed" quantity="speed" value={point.speed} otherwise="default" from={speed[0] > 0 ? speed[0] : idle} range={speed} put={(value) => setPoint({ speed: value })} />
     </div>
   );

@@ -1,8 +1,8 @@
 // What the user should know at once: a lost connection, what is wrong with the design, what was done.
 
 import type { Fault, FieldGroup } from "../protocol/messages";
-import { tell, undo } from "../state/actions";
-import { type State, update, useStore } from "../state/store";
+import { select, tell, undo } from "../state/actions";
+import { type State, useStore } from "../state/store";
 import { groupOf } from "./fields";
 import { isAbout } from "./limits";
 
@@ -35,7 +35,7 @@ function Faults({ faults }: { faults: Fault[] }) {
       <ul>
         {elsewhere.slice(0, 6).map((fault, i) => (
           <li key={i}>
-            {fault.text} {fault.where && <button type="button" onClick={() => update({ selected: fault.where })}>Show the field</button>}
+            {fault.text} {fault.where && <button type="button" onClick={() => select(fault.where)}>Show the field</button>}
           </li>
         ))}
       </ul>

@@ -26,7 +26,7 @@ export function keepToken(token: string): void {
 const SESSION_KEY = "torsional.session";
 
 /** Tells this tab's requests and jobs from those of others; the same after a reload, so that they are found again. */
-function session(): string {
+export function session(): string {
   const kept = sessionStorage.getItem(SESSION_KEY);
   if (kept) return kept;
   const made = crypto.getRandomValues(new Uint32Array(4)).join("-");

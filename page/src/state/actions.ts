@@ -8,6 +8,13 @@ export function setValue(path: string, value: Json | undefined): void {
   update((state) => ({ history: changed(state.history, path, value) }));
 }
 
+/** A value picked rather than typed: a step of its own. */
+export function chooseValue(path: string, value: Json | undefined): void {
+  endRun();
+  setValue(path, value);
+  endRun();
+}
+
 export function setChanges(changes: Changes): void {
   update((state) => ({ history: replaced(state.history, changes) }));
 }
@@ -27,13 +34,19 @@ export function redo(): void {
 /** Another design in place of the present one; its past is its own. */
 export function loadDesign(design: Design, name: string): void {
   const { text, files, changes } = design;
-  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {}, selected: "" };
+  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {}, selected: "", part: "", parts: {} };
   update({ ...empty, text, files, name, history: begun(changes), savedChanges: changes, notice: "" });
   setPoint({ gear: null, torque: null, speed: null });
 }
 
 export function setPoint(point: Partial<Point>): void {
   update((state) => ({ point: { ...state.point, ...point } }));
+}
+
+/** The values of a block, or of one part of the drawing that comes from it. */
+export function select(path: string, part = ""): void {
+  endRun();
+  update({ selected: path, part });
 }
 
 export function setView(view: string): void {

@@ -1,7 +1,8 @@
 // Asks the server whatever the design, the operating point and the view on screen need, and keeps the answers.
 
 import { answers as post } from "../protocol/client";
-import { type Answer, type Ask, type Design, type Fault, type ModelAnswer, isRefused } from "../protocol/messages";
+import { type Answer, type Ask, type Changes, type Design, type Fault, type ModelAnswer, isRefused } from "../protocol/messages";
+import { gearOf } from "../views/point";
 import { viewNamed } from "../views/registry";
 import { Asking, type Listener, type Wanted } from "./asking";
 import { type State, current, designOf, subscribe, update } from "./store";
@@ -15,7 +16,7 @@ function viewAsks(state: State): Ask[] {
 }
 
 function modelAsk(state: State): Ask {
-  return { view: MODEL, ...(state.point.gear === null ? {} : { gear: state.point.gear }) };
+  return { view: MODEL, ...gearOf(state.point) };
 }
 
 /** The design told without its changes: shown where the changes are wrong from the beginning. */
@@ -86,6 +87,21 @@ function variantListener(index: number): Listener {
 
 let askedVariants: State["variants"] = [];
 
+/** What the parts of the drawing are made of changes with the kind of absorber and the gear, not with values. */
+const partsAsker = new Asking(post, {
+  answered: (_, [found]) => update({ parts: isRefused(found) ? {} : (found as { parts: State["parts"] }).parts }),
+  refused: () => update({ parts: {} }),
+  connection: () => undefined,
+});
+
+function askParts(state: State): void {
+  if (!state.part) return;
+  const { absorber } = state.history.present;
+  const changes: Changes = absorber === undefined ? {} : { absorber };
+  const gear = gearOf(state.point);
+  partsAsker.want({ design: { ...designOf(state), changes }, asks: [{ view: "parts", ...gear }], label: "parts" });
+}
+
 function ask(): void {
   const state = current();
   if (state.variants !== askedVariants) variantAskers.forEach((asker) => asker.forget());
@@ -93,6 +109,7 @@ function ask(): void {
   if (!state.text) return;
   const asks = viewAsks(state);
   asker.want({ design: designOf(state), asks: [modelAsk(state), ...asks], label: state.view });
+  askParts(state);
   if (!viewNamed(state.view).compares || !asks.length) return;
   state.variants.forEach(({ design }, index) => variantAskers[index].want({ design, asks, label: state.view }));
 }

@@ -1,6 +1,6 @@
 // The work outlives a reload, and goes from one browser to another by a link.
 
-import type { Variant } from "../protocol/client";
+import { type Variant, session } from "../protocol/client";
 import type { Design, Settings } from "../protocol/messages";
 import { begun } from "./history";
 import { packed, unpacked } from "./link";
@@ -67,16 +67,23 @@ export function takeKept(): boolean {
 
 export interface Unsaved {
   time: string;
+  session: string;
   work: Work;
 }
 
-/** Work with changes that was left unsaved in a tab that is gone. */
-export function unsavedWork(): Unsaved | null {
+function stored(): Unsaved | null {
   try {
     return JSON.parse(localStorage.getItem(UNSAVED) ?? "null") as Unsaved | null;
   } catch {
     return null;
   }
+}
+
+/** Work with changes that was left unsaved in a tab that is gone; looked for before this tab's work takes its place. */
+const left = typeof localStorage === "undefined" ? null : stored();
+
+export function unsavedWork(): Unsaved | null {
+  return left !== null && left.session !== session() ? left : null;
 }
 
 function keep(): void {
@@ -85,7 +92,8 @@ function keep(): void {
   const work = workOf(state);
   try {
     sessionStorage.setItem(WORK, JSON.stringify(work));
-    if (isUnsaved(state)) localStorage.setItem(UNSAVED, JSON.stringify({ time: new Date().toISOString(), work }));
+    if (isUnsaved(state)) localStorage.setItem(UNSAVED, JSON.stringify({ time: new Date().toISOString(), session: session(), work }));
+    else if (stored()?.session === session()) localStorage.removeItem(UNSAVED);
   } catch {
     // A full or forbidden store keeps nobody from working; a link or a saved file holds the work all the same.
   }

@@ -33,7 +33,12 @@ export interface State {
   point: Point;
   view: string;
   settings: { [view: string]: Settings };
+  /** Key path of the block whose values are shown. */
   selected: string;
+  /** The disc or link that was chosen in the drawing; empty where none was. */
+  part: string;
+  /** Key paths of the values that each disc and link is made of, once the server has told. */
+  parts: { [part: string]: string[] };
   theme: Theme;
   variants: Variant[];
   connection: "good" | "lost" | "busy";
@@ -61,6 +66,8 @@ const EMPTY: State = {
   view: "response",
   settings: {},
   selected: "",
+  part: "",
+  parts: {},
   theme: "system",
   variants: [],
   connection: "good",

@@ -29,6 +29,7 @@ function asks({ model, point, settings }: Context): Ask[] {
   const ask: Ask = { view: "characteristic", ...pointOf(point) };
   const element = settings.element;
   if (typeof element === "string" && (!model || model.elements.includes(element))) ask.element = element;
+  else if (model && !model.landmarks.springs.length && !model.landmarks.clutch && model.elements.length) ask.element = model.elements[0];
   return [ask];
 }
 
@@ -43,7 +44,7 @@ function curveOf(found: Characteristic, friction: number, units: Units): Curve {
   return { angle: scaled(found.angle.data, units, "relative_angle"), torque: scaled(torque, units, "torque") };
 }
 
-function CharacteristicView({ told, variants, settings, set }: Shown) {
+function CharacteristicView({ told, variants, model, set }: Shown) {
   const found = told.answers[0] as Characteristic;
   const units = useStore((state) => state.start?.units ?? {});
   const own = found.friction ? [curveOf(found, found.friction, units), curveOf(found, -found.friction, units)] : [curveOf(found, 0, units)];
@@ -52,8 +53,8 @@ function CharacteristicView({ told, variants, settings, set }: Shown) {
   return (
     <>
       <div className="settings" role="group" aria-label="Settings of the characteristic">
-        <Choose label="Spring" options={found.elements.map((name) => [name, words(name)])} value={found.element} put={(element) => set({ element })} />
-        {typeof settings.element === "string" && <button type="button" onClick={() => set({ element: null })}>The absorber's</button>}
+        <Choose label="Spring" options={[...new Set([...found.elements, ...model.elements])].map((name) => [name, words(name)])} value={found.element} put={(element) => set({ element })} />
+        
       </div>
       <Picture title={title} ask={told.asks[0]} figures={() => figures(found, units)}>
         <Plane label={title} height={440} x={{ range: padded(extent(...own.map((curve) => curve.angle)), 0.02), label: axisLabel(units, "relative_angle", "twist") }} y={{ range: torques(found, own, units), label: axisLabel(units, "torque") }}>

@@ -40,7 +40,7 @@ function ModesView({ told, variants, model, settings, set }: Shown) {
   const asked = typeof settings.mode === "number" ? settings.mode : elastic;
   const mode = Math.min(asked, found.name.length - 1);
   const others = variants.map(({ name, told: other }) => ({ name, found: other?.answers[0] as Modes | undefined }));
-  const point = `gear ${found.gear}, ${amount(units, "torque", found.torque)}, ${amount(units, "speed", found.speed)}`;
+  const point = `${found.gear ? `gear ${found.gear}, ` : ""}${amount(units, "torque", found.torque)}, ${amount(units, "speed", found.speed)}`;
   const title = `${heading(found, mode)}, ${amount(units, "frequency", found.frequency.data[mode])}`;
   return (
     <>

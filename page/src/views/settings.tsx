@@ -1,5 +1,6 @@
 // The controls that settings of views are made of.
 
+import { useId } from "react";
 import { Menu } from "../parts/menu";
 import { words } from "./values";
 
@@ -36,12 +37,13 @@ interface ChooseProps {
 
 /** One of several. */
 export function Choose({ label, options, value, put }: ChooseProps) {
+  const id = useId();
   return (
-    <label className="choose">
-      <span>{label}</span>
-      <select value={value} onChange={(event) => put(event.target.value)}>
+    <span className="choose">
+      <label htmlFor={id}>{label}</label>
+      <select id={id} value={value} onChange={(event) => put(event.target.value)}>
         {options.map(([name, text]) => <option key={name} value={name}>{text}</option>)}
       </select>
-    </label>
+    </span>
   );
 }
