@@ -82,9 +82,9 @@ function Sections({ fields, marked }: { fields: Field[]; marked: (path: string) 
   ));
 }
 
-/** Fields by the section of the block that they belong to, in their order. */
+/** Fields by the section of the block that they belong to, in their order; those of the block itself come first. */
 function sections(fields: Field[]): [string, Field[]][] {
-  const found = new Map<string, Field[]>();
+  const found = new Map<string, Field[]>([["", []]]);
   for (const field of fields) found.set(field.section, [...(found.get(field.section) ?? []), field]);
-  return [...found];
+  return [...found].filter(([, inside]) => inside.length);
 }
