@@ -10,7 +10,7 @@ import { useStore } from "../state/store";
 import { amount } from "../units";
 
 const NARROWEST = 44;
-const WIDEST = 92;
+const WIDEST = 120;
 const LEVEL = 16;
 const THICK = 13;
 const TALLEST = 36;

@@ -54,9 +54,11 @@ function ResponseView({ told, variants, model, settings, set }: Shown) {
   return (
     <>
       <ResponseSettings found={found} model={model} settings={settings} set={set} />
-      {found.places.map((place, index) => (
-        <PlacePicture key={`${place.kind} ${place.name}`} found={found} index={index} others={others} ask={told.asks[0]} log={settings.log === true} />
-      ))}
+      <div className="pictures">
+        {found.places.map((place, index) => (
+          <PlacePicture key={`${place.kind} ${place.name}`} found={found} index={index} others={others} ask={told.asks[0]} log={settings.log === true} />
+        ))}
+      </div>
     </>
   );
 }
