@@ -21,6 +21,8 @@ export interface Marks {
   range?: [number, number];
   /** Where the user is: a thin line. */
   at?: number | null;
+  /** Instants at which something begins: dashed lines. */
+  events?: number[];
 }
 
 interface LinesProps {
@@ -51,7 +53,8 @@ function drawMarks(plot: uPlot, marks: Marks, look: Look): void {
     ctx.fillStyle = look.shade;
     ctx.fillRect(left, bbox.top, right - left, bbox.height);
   }
-  for (const [value, dash] of [[marks.idle, [6, 4]], [marks.at, []]] as const) {
+  const events = (marks.events ?? []).map((event) => [event, [2, 4]] as const);
+  for (const [value, dash] of [[marks.idle, [6, 4]], [marks.at, []], ...events] as const) {
     if (value === null || value === undefined) continue;
     ctx.strokeStyle = look.faint;
     ctx.lineWidth = devicePixelRatio;

@@ -8,9 +8,10 @@ import { MAP } from "./map";
 import { MODES } from "./modes";
 import { PARETO } from "./pareto/view";
 import { RESPONSE } from "./response";
+import { SCENARIOS } from "./scenario/view";
 import type { View } from "./view";
 
-export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, BRANCHES, COMPARISON, PARETO];
+export const VIEWS: View[] = [MODES, INTERFERENCE, RESPONSE, MAP, CHARACTERISTIC, BRANCHES, SCENARIOS, COMPARISON, PARETO];
 
 /** A view by its name; the first one for a name of an older link. */
 export function viewNamed(name: string): View {
