@@ -5,7 +5,7 @@ import { type Figures, Picture } from "../charts/picture";
 import { type Range, extent, padded } from "../charts/scales";
 import { DASHES } from "../charts/style";
 import type { Ask, Grid, Units } from "../protocol/messages";
-import { useStore } from "../state/store";
+import { type Told, useStore } from "../state/store";
 import { amount, axisLabel, told as number } from "../units";
 import { pointOf } from "./point";
 import { Choose } from "./settings";
@@ -108,11 +108,22 @@ function torqueAt(found: Characteristic, angle: number): number {
   return found.torque.data[next - 1] + share * (found.torque.data[next] - found.torque.data[next - 1]);
 }
 
+/** Where the spring is at the operating point, and how far it swings there. */
+function pointText({ speed, torque, angle, swing }: NonNullable<Characteristic["point"]>, units: Units): string {
+  const where = `At ${amount(units, "speed", speed)} and ${amount(units, "torque", torque)} mean engine torque`;
+  return `${where}: twist ${amount(units, "relative_angle", angle)}, swinging by ±${amount(units, "relative_angle", swing, 3)} (half peak-to-peak, shaded).`;
+}
+
+function summary(told: Told, units: Units): string {
+  const { point } = told.answers[0] as Characteristic;
+  return point ? pointText(point, units) : "";
+}
+
 function Words({ found, others, units }: { found: Characteristic; others: string[]; units: Units }) {
   const { point } = found;
   return (
     <ul className="words">
-      {point && <li>{`At ${amount(units, "speed", point.speed)} and ${amount(units, "torque", point.torque)} mean engine torque: twist ${amount(units, "relative_angle", point.angle)}, swinging by ±${amount(units, "relative_angle", point.swing, 3)} (half peak-to-peak, shaded).`}</li>}
+      {point && <li>{pointText(point, units)}</li>}
       {found.stages.map((stage) => <li key={stage.angle}>{`Stiffness ${amount(units, "stiffness", stage.stiffness)} at a twist of ${amount(units, "relative_angle", stage.angle, 3)}.`}</li>)}
       {found.friction > 0 && <li>{`Friction beside the spring slips at ${amount(units, "torque", found.friction)}: the upper line is the way of rising twist.`}</li>}
       {others.length > 0 && <li>{`Dashed: ${others.join(", ")}.`}</li>}
@@ -125,4 +136,4 @@ function figures(found: Characteristic, units: Units): Figures {
   return { columns: [axisLabel(units, "relative_angle", "twist"), axisLabel(units, "torque")], rows: [...angle].map((value, i) => [number(value), number(torque[i])]) };
 }
 
-export const CHARACTERISTIC: View = { name: "characteristic", title: "Characteristic", asks, compares: true, component: CharacteristicView };
+export const CHARACTERISTIC: View = { name: "characteristic", title: "Characteristic", asks, compares: true, component: CharacteristicView, summary };

@@ -9,7 +9,7 @@ import { type Figures, Picture } from "../charts/picture";
 import { row } from "../protocol/frame";
 import type { Ask, Grid, Units } from "../protocol/messages";
 import { setPoint } from "../state/actions";
-import { useStore } from "../state/store";
+import { type Told, useStore } from "../state/store";
 import { amount, axisLabel, shown, told as number } from "../units";
 import { limits } from "./limits";
 import { Choose } from "./settings";
@@ -157,4 +157,11 @@ function figures(found: MapAnswer, values: Float64Array, units: Units): Figures 
   return { columns: ["gear", "torque [Nm]", ...[...speed].map((value) => `${number(value)} rpm`)], rows };
 }
 
-export const MAP: View = { name: "map", title: "Map", asks, compares: true, component: MapView };
+/** Of each gear the largest amplitude within full load. */
+function summary(told: Told, units: Units): string {
+  const found = told.answers[0] as MapAnswer;
+  const most = found.gears.map((gear, g) => `gear ${gear} ${amount(units, found.quantity, limits(row(found.value, g), found.within.data)[1], 3)}`);
+  return `Order ${found.order} of ${words(found.place)}, at most: ${most.join(", ")}`;
+}
+
+export const MAP: View = { name: "map", title: "Map", asks, compares: true, component: MapView, summary };

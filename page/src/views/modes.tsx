@@ -6,7 +6,7 @@ import { type Figures, Picture } from "../charts/picture";
 import { useCalm } from "../charts/style";
 import { row } from "../protocol/frame";
 import type { Ask, Grid, ModelAnswer, Units } from "../protocol/messages";
-import { useStore } from "../state/store";
+import { type Told, useStore } from "../state/store";
 import { amount, told as number } from "../units";
 import { pointOf } from "./point";
 import { words } from "./values";
@@ -187,4 +187,14 @@ function Shares({ title, names, shares }: { title: string; names: string[]; shar
   );
 }
 
-export const MODES: View = { name: "modes", title: "Modes", asks, compares: true, component: ModesView };
+const TOLD = 5;
+
+/** The lowest elastic modes. */
+function summary(told: Told, units: Units): string {
+  const found = told.answers[0] as Modes;
+  const first = firstElastic(found);
+  const modes = found.name.slice(first, first + TOLD).map((name, i) => `${words(name) || `mode ${first + i + 1}`} ${amount(units, "frequency", found.frequency.data[first + i])}`);
+  return modes.join(", ");
+}
+
+export const MODES: View = { name: "modes", title: "Modes", asks, compares: true, component: ModesView, summary };

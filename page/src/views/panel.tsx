@@ -5,6 +5,7 @@ import type { Settings } from "../protocol/messages";
 import { setSettings, setView } from "../state/actions";
 import { useStore } from "../state/store";
 import { VIEWS, viewNamed } from "./registry";
+import { Summary } from "./summary";
 import type { View } from "./view";
 
 export function Panel() {
@@ -15,6 +16,7 @@ export function Panel() {
       <Tabs chosen={view.name} />
       <div role="tabpanel" id="panel" aria-labelledby={`tab-${view.name}`} className="panel">
         <Content key={view.name} view={view} />
+        <Summary key={`summary ${view.name}`} view={view} />
       </div>
     </main>
   );

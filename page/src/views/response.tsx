@@ -4,9 +4,9 @@ import { useMemo } from "react";
 import { type Line, Lines } from "../charts/lines";
 import { type Figures, Picture } from "../charts/picture";
 import { row } from "../protocol/frame";
-import type { Ask, Grid, Json, ModelAnswer, Settings } from "../protocol/messages";
-import { useStore } from "../state/store";
-import { axisLabel, shown, told as number } from "../units";
+import type { Ask, Grid, Json, ModelAnswer, Settings, Units } from "../protocol/messages";
+import { type Told, useStore } from "../state/store";
+import { amount, axisLabel, shown, told as number } from "../units";
 import { Choices, Choose } from "./settings";
 import { scaled } from "./values";
 import type { Context, Shown, View } from "./view";
@@ -137,4 +137,15 @@ function ResponseSettings({ found, model, settings, set }: SettingsProps) {
   );
 }
 
-export const RESPONSE: View = { name: "response", title: "Response", asks, compares: true, component: ResponseView };
+/** Of each place the largest amplitude of the first order, and at which speed. */
+function summary(told: Told, units: Units): string {
+  const found = told.answers[0] as Response;
+  const sentences = found.places.map((place, index) => {
+    const values = row(found.value, index, 0);
+    const at = values.reduce((best, value, i) => (value > values[best] ? i : best), 0);
+    return `${place.label}: order ${found.orders[0]} at most ${amount(units, place.quantity, values[at])} at ${amount(units, "speed", found.speed.data[at])}`;
+  });
+  return sentences.join("; ");
+}
+
+export const RESPONSE: View = { name: "response", title: "Response", asks, compares: true, component: ResponseView, summary };

@@ -1,7 +1,7 @@
 // What a view is made of: a name, what it asks of the server under its settings, and how it shows the answers.
 
 import type { ComponentType } from "react";
-import type { Ask, ModelAnswer, Settings } from "../protocol/messages";
+import type { Ask, ModelAnswer, Settings, Units } from "../protocol/messages";
 import type { Point, Told } from "../state/store";
 
 export interface Context {
@@ -29,4 +29,6 @@ export interface View {
   /** Whether kept variants are asked the same. */
   compares: boolean;
   component: ComponentType<Shown>;
+  /** The answers in a sentence, read out to who cannot see the pictures change. */
+  summary?: (told: Told, units: Units) => string;
 }
