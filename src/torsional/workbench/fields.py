@@ -118,7 +118,6 @@ def _field(value: Any, raw: Any, path: str, label: str, section: str, info: Fiel
     elif value is None and not quantity and int not in _types(info.annotation):
         kind = "text"
     entry = QUANTITIES[quantity.name] if quantity else None
-    words = [entry.long_name if entry else "", info.description or ""]
     return Field(
         path=path,
         label=label,
@@ -126,7 +125,7 @@ def _field(value: Any, raw: Any, path: str, label: str, section: str, info: Fiel
         kind=kind,
         text=_written(raw if raw is not None else value),
         given=raw is not None,
-        help=", ".join(filter(None, words)),
+        help=info.description or (entry.long_name if entry else ""),
         value=number,
         quantity=quantity.name if quantity else None,
         unit=entry.unit.strip("-") if entry else "",

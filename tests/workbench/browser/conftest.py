@@ -86,7 +86,9 @@ def opened(chromium: Browser) -> Iterator[Callable[..., Page]]:
 
     def open_page(address: str, width: int = 1440, height: int = 900, **settings: object) -> Page:
         context = chromium.new_context(
-            viewport={"width": width, "height": height}, accept_downloads=True, **settings  # type: ignore[arg-type]
+            viewport={"width": width, "height": height},
+            accept_downloads=True,
+            **settings,  # type: ignore[arg-type]
         )
         contexts.append(context)
         page = context.new_page()
