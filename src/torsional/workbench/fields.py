@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -49,9 +49,9 @@ class Field:
 
 def groups_of(model: Model) -> list[dict[str, Any]]:
     """The values of a model's file, a group for each of its blocks: {path, label, fields}."""
-    told = [{"path": "name", "label": "Model", "fields": [asdict(_title(model))]}]
+    told = [{"path": "name", "label": "Model", "fields": [dict(vars(_title(model)))]}]
     for path, label, fields in _groups(model):
-        told += [{"path": path, "label": label, "fields": [asdict(field) for field in fields]}] if fields else []
+        told += [{"path": path, "label": label, "fields": [dict(vars(field)) for field in fields]}] if fields else []
     return told
 
 
