@@ -59,6 +59,7 @@ def application(service: Service, rules: Rules) -> App:
     app.add_exception_handler(RefusedError, _refusal)
     app.add_exception_handler(404, _nothing)
     app.add_exception_handler(405, _nothing)
+    app.add_exception_handler(Exception, _broken)
     _answering(app, service)
     _writing(app, service)
     _working(app, service)
@@ -205,6 +206,11 @@ async def _tidied(jobs: Jobs) -> None:
 async def _refusal(_: Request, error: Exception) -> Response:
     assert isinstance(error, RefusedError)
     return JSONResponse(document(error.errors), status_code=error.status)
+
+
+async def _broken(_: Request, error: Exception) -> Response:
+    told = refused(500, "this should not have happened", found=type(error).__name__)
+    return JSONResponse(document(told.errors), status_code=500)
 
 
 async def _nothing(_: Request, error: Exception) -> Response:

@@ -91,7 +91,8 @@ class Guard:
         rules = self.rules
         if headers.get("host", "").lower() not in rules.hosts:
             found = headers.get("host", "")[:100] or "none"
-            raise refused(403, "the server is not called by this name", where="Host", found=found)
+            remedy = "open the address that 'torsional workbench' told; a tunnel wants the same port at both ends"
+            raise refused(403, "the server is not called by this name", where="Host", found=found, remedy=remedy)
         origin = headers.get("origin")
         if origin is not None and origin.lower() not in {f"http://{host}" for host in rules.hosts}:
             raise refused(403, "requests of other pages are not answered", where="Origin", found=origin[:100])

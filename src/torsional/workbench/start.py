@@ -84,6 +84,7 @@ def served(asked: Asked, listening: Callable[[str], None]) -> None:
         config = uvicorn.Config(
             app,
             log_config=None,
+            log_level="error",
             access_log=False,
             server_header=False,
             lifespan="on",
