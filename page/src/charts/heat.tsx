@@ -60,7 +60,12 @@ export function Heat({ label, x, y, values, colours, height, over, read, onPick 
 function Cross({ paper, x, y }: { paper: Paper; x: number; y: number }) {
   const { left, top, width, height } = paper;
   const way = `M${paper.x.place(x)} ${top}v${height}M${left} ${paper.y.place(y)}h${width}`;
-  return <path d={way} stroke="#fff" strokeWidth={1} style={{ mixBlendMode: "difference" }} pointerEvents="none" />;
+  return (
+    <g pointerEvents="none">
+      <path d={way} stroke="#000" strokeOpacity={0.45} strokeWidth={3} />
+      <path d={way} stroke="#fff" strokeWidth={1} />
+    </g>
+  );
 }
 
 interface CellsProps {

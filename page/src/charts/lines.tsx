@@ -165,7 +165,7 @@ export function Lines(props: LinesProps) {
   };
   return (
     <div className="lines">
-      <div ref={ref} className="plot" data-height={height} role="img" aria-label={label} tabIndex={0} onKeyDown={move} onDoubleClick={() => at !== null && onPick?.(x.values[at])} />
+      <div ref={ref} className="plot" data-height={height} role="img" aria-label={label} tabIndex={0} onKeyDown={move} />
       <Legend lines={shown} hidden={hidden} toggle={toggle} at={at} x={x} look={look} />
     </div>
   );

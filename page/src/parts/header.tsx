@@ -9,10 +9,9 @@ import { NumberInput } from "./number";
 export function Header() {
   const name = useStore((state) => state.model?.name ?? state.name);
   const unsaved = useStore(isUnsaved);
-  const wrong = useStore((state) => state.faults.length > 0);
   return (
     <header>
-      <h1>{name || "Workbench"}{unsaved && !wrong && <small> · changed</small>}{wrong && <small className="wrong" role="status"> · the pictures show the last sound design</small>}</h1>
+      <h1>{name || "Workbench"}{unsaved && <small> · changed</small>}</h1>
       <OperatingPoint />
       <nav aria-label="Design">
         <Steps />

@@ -5,8 +5,9 @@ import { type Line, Lines } from "../charts/lines";
 import { type Figures, Picture } from "../charts/picture";
 import { row } from "../protocol/frame";
 import type { Ask, Grid, Units } from "../protocol/messages";
+import { setPoint } from "../state/actions";
 import { useStore } from "../state/store";
-import { axisLabel, shown, told as number } from "../units";
+import { axisLabel, shown, si, told as number } from "../units";
 import { Choices } from "./settings";
 import { scaled, words } from "./values";
 import type { Context, Shown, View } from "./view";
@@ -80,7 +81,7 @@ function InterferenceView({ told, model, settings, set }: Shown) {
         {settings.orders !== undefined && <button type="button" onClick={() => set({ orders: null })}>Usual orders</button>}
       </div>
       <Picture title="Natural frequencies and orders" ask={told.asks[0]} figures={() => crossings(found, units)}>
-        <Lines label="Natural frequencies over speed, crossed by orders" x={{ values: speed, label: axisLabel(units, "speed", "speed") }} y={{ label: axisLabel(units, "frequency"), range: [0, highest(found)] }} lines={lines} marks={marks} height={460} />
+        <Lines label="Natural frequencies over speed, crossed by orders" x={{ values: speed, label: axisLabel(units, "speed", "speed") }} y={{ label: axisLabel(units, "frequency"), range: [0, highest(found)] }} lines={lines} marks={marks} onPick={(value) => setPoint({ speed: si(units, "speed", Math.round(value)) })} height={460} />
       </Picture>
     </>
   );

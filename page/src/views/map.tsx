@@ -10,7 +10,7 @@ import { row } from "../protocol/frame";
 import type { Ask, Grid, Units } from "../protocol/messages";
 import { setPoint } from "../state/actions";
 import { type Told, useStore } from "../state/store";
-import { amount, axisLabel, shown, told as number } from "../units";
+import { amount, axisLabel, shown, si, told as number } from "../units";
 import { limits } from "./limits";
 import { Choose } from "./settings";
 import { scaled, words } from "./values";
@@ -96,7 +96,8 @@ function GearMap({ found, index, values, colours, unit }: GearMapProps) {
     const size = unit ? `${number(value, 3)} ${unit}` : `${number(value)} ${axisUnit(units, found.quantity)}`;
     return `${number(speed[c])} rpm, ${number(torque[r])} Nm: ${Number.isNaN(value) ? "not solved" : size}${found.within.data[r * speed.length + c] ? "" : " (beyond full load)"}`;
   };
-  const pick = (r: number, c: number) => setPoint({ gear: found.gears[index], speed: found.speed.data[c], torque: found.torque.data[r] });
+  const pick = (r: number, c: number) =>
+    setPoint({ gear: found.gears[index], speed: si(units, "speed", Math.round(speed[c])), torque: si(units, "torque", Math.round(torque[r])) });
   const alone = found.gears.length === 1;
   return (
     <section aria-label={`Gear ${found.gears[index]}`}>

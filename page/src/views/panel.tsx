@@ -24,6 +24,7 @@ export function Panel() {
 
 function Tabs({ chosen }: { chosen: string }) {
   const list = useRef<HTMLDivElement>(null);
+  const wrong = useStore((state) => state.faults.length > 0);
   const pressed = (event: KeyboardEvent) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     if (step === undefined) return;
@@ -34,12 +35,15 @@ function Tabs({ chosen }: { chosen: string }) {
     list.current?.querySelector<HTMLElement>(`#tab-${next.name}`)?.focus();
   };
   return (
-    <div ref={list} role="tablist" aria-label="Views" className="tabs" onKeyDown={pressed}>
-      {VIEWS.map(({ name, title }) => (
-        <button key={name} id={`tab-${name}`} type="button" role="tab" aria-selected={name === chosen} aria-controls="panel" tabIndex={name === chosen ? 0 : -1} onClick={() => setView(name)}>
-          {title}
-        </button>
-      ))}
+    <div className="tabs">
+      <div ref={list} role="tablist" aria-label="Views" onKeyDown={pressed}>
+        {VIEWS.map(({ name, title }) => (
+          <button key={name} id={`tab-${name}`} type="button" role="tab" aria-selected={name === chosen} aria-controls="panel" tabIndex={name === chosen ? 0 : -1} onClick={() => setView(name)}>
+            {title}
+          </button>
+        ))}
+      </div>
+      <small className="wrong" role="status">{wrong ? "the last sound design is shown" : ""}</small>
     </div>
   );
 }

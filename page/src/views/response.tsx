@@ -5,8 +5,9 @@ import { type Line, Lines } from "../charts/lines";
 import { type Figures, Picture } from "../charts/picture";
 import { row } from "../protocol/frame";
 import type { Ask, Grid, Json, ModelAnswer, Settings, Units } from "../protocol/messages";
+import { setPoint } from "../state/actions";
 import { type Told, useStore } from "../state/store";
-import { amount, axisLabel, shown, told as number } from "../units";
+import { amount, axisLabel, shown, si, told as number } from "../units";
 import { Choices, Choose } from "./settings";
 import { scaled } from "./values";
 import type { Context, Shown, View } from "./view";
@@ -100,7 +101,7 @@ function PlacePicture({ found, index, others, ask, log }: PlaceProps) {
   const title = `${place.label}: ${quantityName(place.quantity)}`;
   return (
     <Picture title={title} ask={only(ask, place)} compared={others.length > 0} figures={figures}>
-      <Lines label={`${title} over speed by order`} x={{ values: speed, label: axisLabel(units, "speed", "speed") }} y={{ label: subject, log }} lines={lines} marks={marks} height={250} />
+      <Lines label={`${title} over speed by order`} x={{ values: speed, label: axisLabel(units, "speed", "speed") }} y={{ label: subject, log }} lines={lines} marks={marks} onPick={(value) => setPoint({ speed: si(units, "speed", Math.round(value)) })} height={250} />
     </Picture>
   );
 }
