@@ -44,7 +44,7 @@ describe("jobs", () => {
     await step();
     expect([branches()?.state.done, branches()?.result]).toEqual([1, null]);
     await step();
-    expect(branches()?.result).toEqual({ of: "job1" });
+    expect(branches()?.result?.content).toEqual({ of: "job1" });
   });
 
   it("tells at once that a job is cancelled, whatever the server says after that", async () => {
@@ -72,7 +72,14 @@ describe("jobs", () => {
     void jobs.begin("branches", { gear: "1" });
     await settled();
     await step();
-    expect([branches()?.id, branches()?.result, cancelled]).toEqual(["job2", { of: "job2" }, ["job1"]]);
+    expect([branches()?.id, branches()?.result?.content, cancelled]).toEqual(["job2", { of: "job2" }, ["job1"]]);
+  });
+
+  it("keeps the last result, with what it is about, until another one is there", async () => {
+    const { jobs } = staged({ state: "done" }, { state: "failed" });
+    await jobs.begin("branches", { gear: "12" });
+    await jobs.begin("branches", { gear: "1" });
+    expect(branches()).toMatchObject({ id: "job2", state: { state: "failed" }, result: { id: "job1", settings: { gear: "12" } } });
   });
 
   it("waits longer and longer for a server that is away, and goes on", async () => {
@@ -98,7 +105,7 @@ describe("jobs", () => {
   it("knows what a result is no longer about", async () => {
     const { jobs } = staged({ state: "done" });
     await jobs.begin("branches", { gear: "12", torque: 1200 });
-    const stale = (settings: Record<string, number | string>) => staleness(branches()!, keyOf(designOf(current())), settings);
+    const stale = (settings: Record<string, number | string>) => staleness(branches()!.result!, keyOf(designOf(current())), settings);
     expect(stale({ torque: 1200, gear: "12" })).toBeNull();
     expect(stale({ torque: 1300, gear: "12" })).toBe("settings");
     update({ history: begun({ a: "2" }) });

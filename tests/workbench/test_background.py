@@ -76,6 +76,10 @@ def test_a_scenario_is_told_with_its_peaks(design: Made) -> None:
         if kind in ("torque", "angular_velocity"):
             whole = run[kind].sel({"node" if kind == "angular_velocity" else "element": place})
             assert (channel["values"].min(), channel["values"].max()) == (float(whole.min()), float(whole.max()))
+    moved = dict(zip(got["moved"]["nodes"], got["moved"]["angle"], strict=True))
+    wound = moved[got["moved"]["crank"]] - moved["secondary"]
+    np.testing.assert_allclose(wound, channels["twist:dmf"]["values"], rtol=0.0, atol=1e-12)
+    assert got["moved"]["speed_ratio"].tolist() == run.speed_ratio.values.tolist()
     measures = {measure["name"]: measure["value"] for measure in got["measures"]}
     assert measures["torque_highest:clutch"] == float(run.torque_highest.sel(element="clutch"))
     assert got["events"][0]["time"] == pytest.approx(0.1, abs=1e-3)

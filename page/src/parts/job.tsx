@@ -23,13 +23,13 @@ export function JobControls({ kind, name, settings, note }: JobProps) {
   const changes = useStore((state) => state.history.present);
   const design = useMemo(() => keyOf({ text, files, changes }), [text, files, changes]);
   const run = () => void JOBS.begin(kind, settings);
-  const stale = job?.result ? staleness(job, design, settings) : null;
+  const stale = job?.result ? staleness(job.result, design, settings) : null;
   if (job && isOpen(job)) return <Progress job={job} cancel={() => JOBS.cancel(kind)} />;
   return (
     <div className="job">
       <button type="button" onClick={run}>{job?.result ? `Run ${name} again` : `Run ${name}`}</button>
       {!job && <small>{note}</small>}
-      <span role="status">{job?.state.state === "cancelled" ? "Cancelled." : job?.result && !stale ? "About the present design." : ""}</span>
+      <span role="status">{[job?.state.state === "cancelled" && "Cancelled.", job?.result && !stale && "The result below is about the present design."].filter(Boolean).join(" ")}</span>
       {stale && <p className="banner" role="status">{STALE[stale]}</p>}
       {job?.state.errors.map((fault, i) => <p key={i} className="banner bad" role="alert">{fault.text}</p>)}
     </div>
@@ -37,8 +37,8 @@ export function JobControls({ kind, name, settings, note }: JobProps) {
 }
 
 const STALE: { [stale in NonNullable<Stale>]: string } = {
-  design: "This result is about an earlier design: run it again for the present one.",
-  settings: "This result is about other settings: run it again for these.",
+  design: "The result below is about an earlier design: run it again for the present one.",
+  settings: "The result below is about other settings: run it again for these.",
 };
 
 function Progress({ job, cancel }: { job: Job; cancel: () => void }) {

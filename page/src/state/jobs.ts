@@ -4,15 +4,24 @@ import { type JobKind, Refused, Unreachable, beginJob, cancelJob, jobResult, job
 import type { Design, Fault, JobState, Settings } from "../protocol/messages";
 import { current, designOf, update } from "./store";
 
-export interface Job {
-  kind: JobKind;
+/** What was asked: of which design, under which settings. */
+interface Asked {
   /** The server's name for it; empty before it has one. */
   id: string;
   /** Tells the design that it is about from others. */
   design: string;
   settings: Settings;
+}
+
+/** What a job came to; it stays on screen until the next one of its kind has come to something. */
+export interface Result extends Asked {
+  content: object;
+}
+
+export interface Job extends Asked {
+  kind: JobKind;
   state: JobState;
-  result: object | null;
+  result: Result | null;
   /** Whether the server could not be reached when it was last asked. */
   lost: boolean;
 }
@@ -48,8 +57,8 @@ export function keyOf(design: Design): string {
 
 export type Stale = "design" | "settings" | null;
 
-/** What of a job is no longer as it would be begun now. */
-export function staleness(job: Job, design: string, settings: Settings): Stale {
+/** What of a result is no longer as it would be asked now. */
+export function staleness(job: Asked, design: string, settings: Settings): Stale {
   if (job.design !== design) return "design";
   return sorted(job.settings) === sorted(settings) ? null : "settings";
 }
@@ -68,7 +77,8 @@ export class Jobs {
   async begin(kind: JobKind, settings: Settings): Promise<void> {
     this.cancel(kind);
     const design = designOf(current());
-    const job: Job = { kind, id: "", design: keyOf(design), settings, state: WAITING, result: null, lost: false };
+    const result = current().jobs[kind]?.result ?? null;
+    const job: Job = { kind, id: "", design: keyOf(design), settings, state: WAITING, result, lost: false };
     put(job);
     try {
       const id = await this.server.begin(design, kind, settings);
@@ -98,10 +108,11 @@ export class Jobs {
     for (let pause = EACH; present() !== null; await this.wait(pause)) {
       try {
         const state = await this.server.state(id);
-        const result = state.state === "done" ? ((await this.server.result(id)) as object) : null;
+        const content = state.state === "done" ? ((await this.server.result(id)) as object) : null;
         const job = present();
         if (job === null) return;
-        put({ ...job, state, result, lost: false });
+        const { design, settings } = job;
+        put({ ...job, state, result: content ? { id, design, settings, content } : job.result, lost: false });
         if (!isOpen(current().jobs[kind])) return;
         pause = EACH;
       } catch (problem) {
@@ -146,11 +157,13 @@ function failed(problem: unknown): JobState {
   return { ...WAITING, state: "failed", errors };
 }
 
-type Kept = Pick<Job, "kind" | "id" | "design" | "settings">;
+type Kept = Asked & Pick<Job, "kind">;
 
 function remember(): void {
-  const worth = Object.values(current().jobs).filter((job) => job?.id && (isOpen(job) || job.state.state === "done"));
-  const kept: Kept[] = worth.map(({ kind, id, design, settings }) => ({ kind, id, design, settings }));
+  const kept: Kept[] = Object.values(current().jobs).flatMap((job) => {
+    const asked = job && (isOpen(job) ? job : job.result);
+    return asked?.id ? [{ kind: job.kind, id: asked.id, design: asked.design, settings: asked.settings }] : [];
+  });
   try {
     sessionStorage.setItem(KEPT, JSON.stringify(kept));
   } catch {

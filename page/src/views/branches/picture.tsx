@@ -25,7 +25,7 @@ export function BranchPicture({ found, shown, show }: PictureProps) {
   const order = options.some(([name]) => name === shown) ? shown : options[0][0];
   const torque = found.torque === "full_load" ? "full load" : amount(units, "torque", found.torque);
   const title = `Branches at ${found.label}${found.gear ? `, gear ${found.gear}` : ""}, ${torque}`;
-  const save = (format: Format) => exportJob(current().jobs.branches!.id, "branches", format);
+  const save = (format: Format) => exportJob(current().jobs.branches!.result!.id, "branches", format);
   return (
     <Picture title={title} save={save} figures={() => figuresOf(found, order, units)}>
       <Choose label="Shown" options={options} value={order} put={show} />

@@ -41,7 +41,7 @@ export function RegionPicture({ found }: { found: Region }) {
   const available = SHOWN.filter((name) => place(name));
   const title = `Order ${told(found.order)} over speed and torque${found.gear ? `, gear ${found.gear}` : ""}`;
   const isCalm = !found.rows.length;
-  const save = (format: Format) => exportJob(current().jobs.region!.id, "region", format);
+  const save = (format: Format) => exportJob(current().jobs.region!.result!.id, "region", format);
   return (
     <Picture title={title} save={save} figures={() => figuresOf(found, units)}>
       <Choose label="Shown" options={available.map((name) => [name, `${QUANTITIES[name].replaceAll("_", " ")} of ${place(name)}`])} value={seen} put={(name) => see(name as Seen)} />

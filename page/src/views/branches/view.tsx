@@ -28,8 +28,8 @@ function branchSettings(settings: Settings, point: Point, model: ModelAnswer): S
 
 function BranchView({ model, settings, set }: Shown) {
   const point = useStore((state) => state.point);
-  const branches = useStore((state) => state.jobs.branches?.result) as Branches | null | undefined;
-  const region = useStore((state) => state.jobs.region?.result) as Region | null | undefined;
+  const branches = useStore((state) => state.jobs.branches?.result?.content) as Branches | undefined;
+  const region = useStore((state) => state.jobs.region?.result?.content) as Region | undefined;
   const show = (shown: string) => set({ shown });
   return (
     <>

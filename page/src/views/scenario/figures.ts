@@ -1,6 +1,7 @@
 // What a run in time tells: channels grouped into panels, values at an instant, and settings read from lines of text.
 
 import type { Grid, Json, Settings } from "../../protocol/messages";
+import type { Moved } from "./windup";
 
 export interface Channel {
   /** What it is and where, as in torque:dmf. */
@@ -16,6 +17,7 @@ export interface Run {
   status: string;
   time: Grid;
   channels: Channel[];
+  moved?: Moved;
   events: { time: number; text: string }[];
   /** The twists [rad] at which a connection meets its stops. */
   stops: { [connection: string]: [number, number] };

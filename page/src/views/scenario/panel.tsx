@@ -33,7 +33,7 @@ export function SignalPanel({ panel, run, at, seek, isFirst }: PanelProps) {
     rows: chosenRows(time.length, MOST_ROWS).map((i) => [told(time[i]), ...panel.channels.map((_, line) => told(lines[line].values[i]))]),
   });
   const now = panel.channels.map(({ label, quantity, values }) => `${label} ${quantity === null ? told(valueAt(time, values.data, at)) : amount(units, quantity, valueAt(time, values.data, at))}`);
-  const save = isFirst ? (format: Format) => exportJob(current().jobs.scenario!.id, "scenario", format) : undefined;
+  const save = isFirst ? (format: Format) => exportJob(current().jobs.scenario!.result!.id, "scenario", format) : undefined;
   return (
     <Picture title={panel.title} note={now.join(", ")} save={save} figures={figures}>
       <Lines label={`${panel.title} over time`} x={{ values: time, label: "time [s]" }} y={{ label: axis, range }} lines={lines} marks={{ at, events }} height={200} onPick={seek} />

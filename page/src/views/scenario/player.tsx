@@ -7,6 +7,7 @@ import { Choose } from "../settings";
 import { type Clock, useClock } from "./clock";
 import { Dials } from "./dials";
 import { type Run, panelsOf } from "./figures";
+import { Motion } from "./motion";
 import { SignalPanel } from "./panel";
 
 const RATES = ["1", "0.5", "0.2", "0.1", "0.05", "0.02"];
@@ -24,6 +25,7 @@ export function Player({ run }: { run: Run }) {
       {run.status !== "complete" && <p className="banner" role="status">{`The run is not complete: ${run.status}.`}</p>}
       <Controls clock={clock} begin={begin} end={end} rate={rate} setRate={setRate} />
       <Dials run={run} time={clock.time} />
+      <Motion run={run} time={clock.time} />
       {panels.map((panel, i) => <SignalPanel key={`${panel.kind} ${panel.quantity}`} panel={panel} run={run} at={clock.time} seek={clock.seek} isFirst={i === 0} />)}
       <Events run={run} clock={clock} />
       <Measures run={run} />

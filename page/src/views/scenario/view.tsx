@@ -11,7 +11,7 @@ import { Player } from "./player";
 
 function ScenarioView({ model, settings, set }: Shown) {
   const scenarios = useStore((state) => state.start?.scenarios ?? []);
-  const result = useStore((state) => state.jobs.scenario?.result) as Run | null | undefined;
+  const result = useStore((state) => state.jobs.scenario?.result?.content) as Run | undefined;
   const chosen = scenarios.find(({ name }) => name === settings.scenario)?.name ?? scenarios[0]?.name ?? "";
   const text = typeof settings.values === "string" ? settings.values : "";
   const [values, problem] = read(text);

@@ -73,6 +73,7 @@ def _content(run: xr.Dataset) -> dict[str, Any]:
         "status": str(run.attrs["status"]),
         "time": run.time.values[kept],
         "channels": list(_channels(run, kept)),
+        "moved": _moved(run, kept),
         "events": list(_events(run)),
         "stops": _stops(run),
         "measures": list(_measures(run)),
@@ -123,6 +124,16 @@ def _channels(run: xr.Dataset, kept: np.ndarray) -> Iterator[dict[str, Any]]:
 
 
 _WORDS = {"angular_velocity": "speed", "twist": "twist", "torque": "torque"}
+
+
+def _moved(run: xr.Dataset, kept: np.ndarray) -> dict[str, Any]:
+    """Angles [rad] of all nodes beyond the mean rotation, by node and time, and how fast each turns to the crank."""
+    return {
+        "crank": str(run.attrs["crank"]),
+        "nodes": [str(name) for name in run.node.values],
+        "speed_ratio": run.speed_ratio.values,
+        "angle": run.angle.transpose("node", "time").values[:, kept],
+    }
 
 
 def _events(run: xr.Dataset) -> Iterator[dict[str, Any]]:
