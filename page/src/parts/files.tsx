@@ -2,8 +2,8 @@
 
 import { useRef } from "react";
 import * as client from "../protocol/client";
-import { loadDesign, tell } from "../state/actions";
-import { type Unsaved, linkOf, takeWork, unsavedWork } from "../state/keeping";
+import { tell } from "../state/actions";
+import { type Unsaved, linkOf, openDesign, takeWork, unsavedWork } from "../state/keeping";
 import { openFiles } from "../state/opening";
 import { current, designOf, update, useStore } from "../state/store";
 import { attempt, handOver } from "./downloads";
@@ -36,7 +36,7 @@ async function report(): Promise<void> {
 
 async function takeExample(name: string): Promise<void> {
   const found = await client.example(name);
-  loadDesign(found.design, found.name);
+  openDesign(found.design, found.name);
 }
 
 export function OpenMenu() {

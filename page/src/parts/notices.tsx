@@ -2,7 +2,8 @@
 
 import type { Fault, FieldGroup } from "../protocol/messages";
 import { select, tell, undo } from "../state/actions";
-import { type State, useStore } from "../state/store";
+import { type State, update, useStore } from "../state/store";
+import { takeWork } from "../state/keeping";
 import { groupOf } from "./fields";
 import { isAbout } from "./limits";
 
@@ -10,11 +11,18 @@ export function Notices() {
   const connection = useStore((state) => state.connection);
   const notice = useStore((state) => state.notice);
   const faults = useStore((state) => state.faults);
+  const aside = useStore((state) => state.aside);
   return (
     <>
       {connection === "lost" && <p className="banner bad" role="alert">No connection to the server: your work is safe here, and goes on as soon as it answers again.</p>}
       {connection === "busy" && <p className="banner" role="status">The server is busy; trying again.</p>}
       {faults.length > 0 && <Faults faults={faults} />}
+      {aside && (
+        <p className="banner" role="status">
+          The changes of {aside.name} were not saved. <button type="button" onClick={() => takeWork(aside)}>Bring them back</button>{" "}
+          <button type="button" onClick={() => update({ aside: null })} aria-label="Let the changes go">×</button>
+        </p>
+      )}
       {notice && (
         <p className="banner" role="status">
           {notice} <button type="button" onClick={() => tell("")} aria-label="Close the notice">×</button>

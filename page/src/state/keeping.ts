@@ -1,26 +1,17 @@
 // The work outlives a reload, and goes from one browser to another by a link.
 
-import { type Variant, session } from "../protocol/client";
-import type { Design, Settings } from "../protocol/messages";
+import { session } from "../protocol/client";
+import type { Design } from "../protocol/messages";
+import { loadDesign } from "./actions";
 import { begun } from "./history";
 import { packed, unpacked } from "./link";
-import { type Point, type State, type Theme, current, designOf, isUnsaved, subscribe, update } from "./store";
+import { type State, type Theme, current, designOf, isUnsaved, subscribe, update } from "./store";
 import { MOST_VARIANTS } from "./variants";
+import { type Work, soundWork } from "./work";
 
 const WORK = "torsional.work";
 const THEME = "torsional.theme";
 const UNSAVED = "torsional.unsaved";
-
-/** What a link and the tab's memory hold. */
-export interface Work {
-  name: string;
-  design: Design;
-  point: Point;
-  view: string;
-  settings: { [view: string]: Settings };
-  selected: string;
-  variants: Variant[];
-}
 
 export function workOf(state: State): Work {
   const { name, point, view, settings, selected, variants } = state;
@@ -31,22 +22,25 @@ export async function linkOf(state: State): Promise<string> {
   return `${location.origin}${location.pathname}#d=${await packed(workOf(state))}`;
 }
 
-function isDesign(value: unknown): value is Design {
-  const design = value as Design | null;
-  const isMap = (map: unknown) => typeof map === "object" && map !== null && !Array.isArray(map);
-  return isMap(design) && typeof design?.text === "string" && isMap(design.files) && isMap(design.changes);
-}
-
 /** Takes work from a link or from the tab's memory; throws for what is none. */
 export function takeWork(value: unknown): void {
-  const work = value as Partial<Work> | null;
-  if (!isDesign(work?.design)) throw new TypeError("no design");
-  const { text, files, changes } = work.design;
-  const { name, point, view, settings, selected, variants } = { ...workOf(current()), ...work };
-  const rest = { name, point, view, settings, selected };
-  const sound = (Array.isArray(variants) ? variants : []).filter((variant) => isDesign(variant?.design));
-  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {} };
-  update({ ...empty, ...rest, text, files, history: begun(changes), savedChanges: {}, variants: sound.slice(0, MOST_VARIANTS) });
+  const { design, variants, ...rest } = soundWork(value);
+  const { text, files, changes } = design;
+  setAside();
+  const empty = { model: null, faults: [], told: {}, refused: {}, variantsTold: {}, part: "", parts: {} };
+  update({ ...empty, ...rest, text, files, history: begun(changes), savedChanges: {}, variants: variants.slice(0, MOST_VARIANTS) });
+}
+
+/** Keeps work that was not saved when another design takes its place, so that it can be brought back. */
+function setAside(): void {
+  const state = current();
+  if (state.text) update({ aside: isUnsaved(state) ? workOf(state) : null });
+}
+
+/** Another design in place of the present one, which can be brought back if it was not saved. */
+export function openDesign(design: Design, name: string): void {
+  setAside();
+  loadDesign(design, name);
 }
 
 export async function takeLink(text: string): Promise<void> {

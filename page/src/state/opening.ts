@@ -1,7 +1,8 @@
 // Model files from the user's disk, with the tables that they name.
 
 import { opened } from "../protocol/client";
-import { loadDesign, tell } from "./actions";
+import { tell } from "./actions";
+import { openDesign } from "./keeping";
 import { current, update } from "./store";
 
 const MODEL = /\.(ya?ml|json)$/i;
@@ -48,5 +49,5 @@ async function open(name: string, text: string, files: Record<string, string>): 
     return tell("");
   }
   update({ incomplete: null });
-  loadDesign(design, name);
+  openDesign(design, name);
 }

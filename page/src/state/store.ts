@@ -6,6 +6,7 @@ import type { Ask, Changes, Design, Fault, ModelAnswer, Settings, Start } from "
 import { type History, begun } from "./history";
 import type { Job } from "./jobs";
 import type { Incomplete } from "./opening";
+import type { Work } from "./work";
 
 export type Theme = "system" | "light" | "dark";
 
@@ -46,6 +47,8 @@ export interface State {
   stopped: string;
   notice: string;
   incomplete: Incomplete | null;
+  /** Work that was not saved when another design took its place. */
+  aside: Work | null;
   model: ModelAnswer | null;
   faults: Fault[];
   told: { [view: string]: Told };
@@ -74,6 +77,7 @@ const EMPTY: State = {
   stopped: "",
   notice: "",
   incomplete: null,
+  aside: null,
   model: null,
   faults: [],
   told: {},

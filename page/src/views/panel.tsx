@@ -3,7 +3,8 @@
 import { type KeyboardEvent, useEffect, useRef } from "react";
 import type { Settings } from "../protocol/messages";
 import { setSettings, setView } from "../state/actions";
-import { useStore } from "../state/store";
+import { update, useStore } from "../state/store";
+import { Guarded } from "./guarded";
 import { VIEWS, viewNamed } from "./registry";
 import { Summary } from "./summary";
 import type { View } from "./view";
@@ -15,7 +16,9 @@ export function Panel() {
     <main>
       <Tabs chosen={view.name} />
       <div role="tabpanel" id="panel" aria-labelledby={`tab-${view.name}`} className="panel">
-        <Content key={view.name} view={view} />
+        <Guarded key={view.name} reset={() => update((state) => ({ settings: { ...state.settings, [view.name]: {} } }))}>
+          <Content view={view} />
+        </Guarded>
         <Summary key={`summary ${view.name}`} view={view} />
       </div>
     </main>
