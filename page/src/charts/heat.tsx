@@ -104,18 +104,32 @@ function edges(middles: ArrayLike<number>): Range {
   return [middles[0] - half, middles[last] + half];
 }
 
+const SHADES = 512;
+const TABLES = new Map<ColourMap, Uint32Array>();
+
+/** A colour map as a table of pixels, for tens of thousands of them at a time. */
+function shadesOf(map: ColourMap): Uint32Array {
+  const known = TABLES.get(map);
+  if (known) return known;
+  const table = new Uint32Array(SHADES);
+  const parts = new Uint8Array(table.buffer);
+  for (let i = 0; i < SHADES; i++) parts.set([...map(i / (SHADES - 1)), 255], 4 * i);
+  TABLES.set(map, table);
+  return table;
+}
+
 function pixels(columns: number, rows: number, values: ArrayLike<number>, { map, range }: Colours): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [columns, rows];
   const drawn = canvas.getContext("2d")!;
   const image = drawn.createImageData(columns, rows);
-  const [low, span] = [Math.log(range[0]), Math.log(range[1] / range[0]) || 1];
+  const [shades, cells] = [shadesOf(map), new Uint32Array(image.data.buffer)];
+  const low = Math.log(range[0]);
+  const scale = (SHADES - 1) / (Math.log(range[1]) - low || 1);
   for (let i = 0; i < columns * rows; i++) {
-    const value = values[i];
-    if (!(value > 0)) continue;
-    const at = 4 * ((rows - 1 - Math.floor(i / columns)) * columns + (i % columns));
-    const [red, green, blue] = map((Math.log(value) - low) / span);
-    image.data.set([red, green, blue, 255], at);
+    if (!(values[i] > 0)) continue;
+    const shade = Math.min(Math.max(Math.round((Math.log(values[i]) - low) * scale), 0), SHADES - 1);
+    cells[(rows - 1 - Math.floor(i / columns)) * columns + (i % columns)] = shades[shade];
   }
   drawn.putImageData(image, 0, 0);
   return canvas;

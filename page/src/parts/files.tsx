@@ -3,7 +3,7 @@
 import { useRef } from "react";
 import * as client from "../protocol/client";
 import { tell } from "../state/actions";
-import { type Unsaved, linkOf, openDesign, takeWork, unsavedWork } from "../state/keeping";
+import { type Unsaved, linkOf, openDesign, showLink, takeWork, unsavedWork } from "../state/keeping";
 import { openFiles } from "../state/opening";
 import { current, designOf, update, useStore } from "../state/store";
 import { attempt, handOver } from "./downloads";
@@ -24,7 +24,7 @@ async function share(): Promise<void> {
     await navigator.clipboard.writeText(link);
     tell("The link to this design is in the clipboard; the design itself is in it, and on no server.");
   } catch {
-    history.replaceState(null, "", link);
+    showLink(link);
     tell("The link to this design is in the address bar; the design itself is in it, and on no server.");
   }
 }

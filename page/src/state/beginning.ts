@@ -3,7 +3,7 @@
 import { Refused, keepToken, start } from "../protocol/client";
 import type { Start } from "../protocol/messages";
 import { loadDesign, tell } from "./actions";
-import { takeKept, takeLink } from "./keeping";
+import { isOwnLink, takeKept, takeLink } from "./keeping";
 import { fragment } from "./link";
 import { current, update } from "./store";
 
@@ -11,10 +11,11 @@ const PAUSE = 1500;
 
 /** Takes token and link out of the address, where neither should stay. */
 function takeAddress(): string | undefined {
+  const isOwn = isOwnLink(location.hash);
   const { token, d } = fragment(location.hash);
   if (token) keepToken(token);
   if (token || d) history.replaceState(null, "", location.pathname + location.search);
-  return d;
+  return isOwn ? undefined : d;
 }
 
 async function started(): Promise<Start> {

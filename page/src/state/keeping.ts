@@ -22,6 +22,19 @@ export async function linkOf(state: State): Promise<string> {
   return `${location.origin}${location.pathname}#d=${await packed(workOf(state))}`;
 }
 
+const SHOWN = "torsional.link";
+
+/** Puts a link into the address bar, where it may be copied from. */
+export function showLink(link: string): void {
+  history.replaceState(null, "", link);
+  sessionStorage.setItem(SHOWN, new URL(link).hash);
+}
+
+/** Whether the address is a link that this tab put there itself: a reload then keeps the work that followed. */
+export function isOwnLink(hash: string): boolean {
+  return hash !== "" && sessionStorage.getItem(SHOWN) === hash;
+}
+
 /** Takes work from a link or from the tab's memory; throws for what is none. */
 export function takeWork(value: unknown): void {
   const { design, variants, ...rest } = soundWork(value);
