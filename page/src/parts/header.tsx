@@ -65,10 +65,15 @@ function ThemeSwitch() {
   return <button type="button" onClick={turn} title="Light, dark, or as the system has it">{{ system: "◐ System", light: "☀ Light", dark: "☾ Dark" }[theme]}</button>;
 }
 
-/** Ctrl+Z and Ctrl+Shift+Z (or Ctrl+Y) anywhere on the page: a design has one history, whatever has the focus. */
+/** Whether keys belong to a text that is no value of the design, as the name of a variant. */
+function isOtherText(target: EventTarget | null): boolean {
+  return target instanceof Element && target.matches("input[type=text], textarea") && target.closest(".field") === null;
+}
+
+/** Ctrl+Z and Ctrl+Shift+Z (or Ctrl+Y) on the page: a design has one history, whichever of its fields has the focus. */
 export function listenForKeys(): () => void {
   const pressed = (event: KeyboardEvent) => {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || isOtherText(event.target)) return;
     const key = event.key.toLowerCase();
     if (key !== "z" && key !== "y") return;
     event.preventDefault();
