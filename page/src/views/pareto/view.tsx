@@ -73,7 +73,8 @@ function Browser({ front, model, settings, set }: Omit<FrontProps, "index"> & { 
   const groups = model.groups;
   const dimensions = useMemo(() => dimensionsOf(front, (path) => quantityOf(model, path)), [front, groups]);
   const [x, y] = useMemo(() => axesOf(front, dimensions, settings.x, settings.y).map((dimension) => inUnits(dimension, units)), [front, dimensions, settings.x, settings.y, units]);
-  const chosen = typeof settings.chosen === "number" && settings.chosen < front.designs ? settings.chosen : null;
+  const at = Number(settings.chosen ?? -1);
+  const chosen = Number.isInteger(at) && at >= 0 && at < front.designs ? at : null;
   const options = dimensions.map(({ key, label }): [string, string] => [key, label]);
   const hasFront = front.on_front?.data.some((value) => value === 1) ?? false;
   const reach = REACHES.find(([name]) => name === settings.reach)?.[0] ?? (hasFront ? "front" : "within");

@@ -24,7 +24,7 @@ export function Motion({ run, time }: { run: Run; time: number }) {
   return (
     <div className="motion">
       <h4>{title}</h4>
-      <Plane label={`${title}; the dials and signals tell the same in figures`} height={240} slanted x={{ range: [-0.6, found.nodes.length - 0.4], label: "", marks }} y={{ range, label: axisLabel(units, "relative_angle", "angle") }}>
+      <Plane label={`${title}; the dials and signals tell the same in figures`} height={300} slanted x={{ range: [-0.6, found.nodes.length - 0.4], label: "", marks }} y={{ range, label: axisLabel(units, "relative_angle", "angle") }}>
         {(paper) => <Line paper={paper} found={found} at={nearest(run.time.data, time)} units={units} discs={discs} />}
       </Plane>
       {found.cut.length > 0 && <p><small>{`Turned through: ${found.cut.map(words).join(", ")}; what lies behind begins at nothing again.`}</small></p>}
