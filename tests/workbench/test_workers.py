@@ -80,6 +80,7 @@ def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
         async with workers(limit=0.3, first=("echoed", (0,))) as some:
             told = await refusal(some.answer(("held", (str(tmp_path / "begun"),)), "a"))
             assert (told.status, told.errors[0]["allowed"]) == (422, "at most 0.3 s")
+            some._limit = 30.0  # whatever else the machine is at
             assert await some.answer(("echoed", (7,)), "a") == 7
 
     soon(asked())
