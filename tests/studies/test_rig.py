@@ -88,7 +88,19 @@ def test_means_over_the_cycle() -> None:
     mean = loop.averaged(loop.angle, 20)
     exact = 0.02 + 0.1 * np.sin(2.0 * np.pi * (np.arange(20) + 0.5) / 20)
     assert np.abs(mean - exact).max() < 2e-3
-    assert loop.of_cycle(loop.course(200).drive) == pytest.approx(loop.angle, abs=2e-4)
+    assert loop.of_cycle(loop.course(200).drive) == pytest.approx(loop.angle[loop.clear], abs=2e-4)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_samples_beside_jumps_of_the_torque_are_left_out(noise: float) -> None:
+    """Dry friction jumps where the swing turns, a quarter and three quarters of the way; a spring does not."""
+    loop = record(noise)
+    phase = np.mod((loop.time - loop.swing.begin) / loop.swing.period, 1.0)
+    turned = np.abs(np.mod(phase, 0.5) - 0.25)
+    assert not loop.clear[turned < 0.005].any() and loop.clear[turned > 0.03].all()
+    assert dataclasses.replace(loop, torque=100.0 * loop.angle).clear.all()
+    left, whole = (loop.averaged(values, 50) for values in (loop.torque[loop.clear], loop.torque))
+    assert np.isnan(left).sum() == 2 and left[:10] == pytest.approx(whole[:10])
 
 
 @pytest.mark.parametrize(
@@ -257,7 +269,7 @@ def arc_springs() -> ArcSprings:
     )
 
 
-@pytest.mark.parametrize("seed", [2, 3, *(pytest.param(seed, marks=pytest.mark.full) for seed in range(4, 12))])
+@pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.full) for seed in range(3, 12))])
 def test_all_parameters_are_recovered_whatever_the_noise(seed: int) -> None:
     found = identified_flywheel(measured_on_rig(rig_flywheel(), POINTS, SENSORS, seed))
     assert np.abs(misses(found)).max() < 0.05, found.values

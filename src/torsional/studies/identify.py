@@ -29,9 +29,9 @@ STEP = 0.02
 """Step of differences over the scale of a parameter: wide, since friction makes predictions bend sharply."""
 ENOUGH = 1e-6
 """Share of the sum of squares, and of the parameters, below which the search ends."""
-APART, MOST, SETTLED = 2.0, 8, 0.01
-"""Of a refinement: differences over so many standard deviations to either side, steps at most, and the gain in squares,
-over those of one degree of freedom, with which it is done."""
+APART, AGAIN, MOST, SETTLED = 2.0, 0.25, 8, 0.01
+"""Of a refinement: differences over so many standard deviations to either side, the share of that way after which they
+are taken anew, steps at most, and the gain in squares, over those of one degree of freedom, with which it is done."""
 
 
 class _Problem:
@@ -166,13 +166,18 @@ def _search(problem: _Problem, sloped: _Problem, start: Array, enough: float) ->
 
 @checked
 def refined(
-    predicted: Prediction, measured: Sequence[Measured], found: Identified, *, errors: Errors | None = None
+    predicted: Prediction,
+    measured: Sequence[Measured],
+    found: Identified,
+    *,
+    errors: Errors | None = None,
+    rough: Prediction | None = None,
 ) -> Identified:
     """What was ``found`` taken to the very minimum, from where it is: Gauss and Newton's steps within the bounds, with
-    slopes over two standard deviations to either side.
+    slopes over two standard deviations to either side, of a ``rough`` model where there is one.
 
     A search with wide slopes ends where friction bends them, some standard deviations away, which intervals would know
-    nothing of.
+    nothing of.  Slopes are taken anew where it has gone half a standard deviation.
 
     >>> x = np.linspace(0.0, 1.0, 9)
     >>> bent, unknown = 2.0 * x + 0.01 * x**3, Unknown("k", "stiffness", 1.9, 0.0, 9.0)
@@ -182,18 +187,22 @@ def refined(
     2.0
     """
     problem = _problem(predicted, measured, found.unknowns)
-    near, slopes = found.estimates / problem.scale, found.slopes
+    sloped = _problem(rough, measured, found.unknowns) if rough else problem
+    near, slopes, there = found.estimates / problem.scale, found.slopes, None
     known = np.where(np.isfinite(found.deviations), found.deviations, np.inf) / problem.scale
     apart = np.clip(APART * known, ENOUGH, STEP)
     for _ in range(MOST):
         before = problem.weighted(near)
-        slopes = problem.local_slopes(near, apart)
+        if there is None or (np.abs(near - there) > AGAIN * apart).any():
+            slopes, there = sloped.local_slopes(near, apart), near
         step = _step(slopes, before, problem.low - near, problem.high - near)
-        shares = (np.clip(near + share * step, problem.low, problem.high) for share in (1.0, 0.5, 0.25))
-        squares = float(before @ before)
+        squares, enough = float(before @ before), SETTLED * float(before @ before) / found.freedom
+        last = squares - float(np.square(before + slopes @ step).sum()) < enough
+        parts = (1.0,) if last else (1.0, 0.5, 0.25)
+        shares = (np.clip(near + share * step, problem.low, problem.high) for share in parts)
         tried = ((each, float(np.square(problem.weighted(each)).sum())) for each in shares)
         near, left = next((pair for pair in tried if pair[1] < squares), (near, squares))
-        if squares - left < SETTLED * left / found.freedom:
+        if last or squares - left < enough:
             break
     return problem.told(near, slopes, errors)
 

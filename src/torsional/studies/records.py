@@ -20,8 +20,9 @@ from scipy.optimize import minimize_scalar
 from torsional.arguments import checked
 from torsional.errors import ModelError
 from torsional.files.opening import TABLE_BYTES, read_text, shown
-from torsional.numerics.arrays import Array
+from torsional.numerics.arrays import Array, IntArray
 from torsional.solvers.hysteresis import Course
+from torsional.system import BoolArray
 from torsional.tables import heading, parse_table
 from torsional.units import QUANTITIES, RPM
 
@@ -34,6 +35,8 @@ ORDERS = 15
 """Orders of the swing that a motion is made of: what is beyond counts as noise."""
 MEDIAN = 0.6744897501960817
 """Median of what is normally distributed, without its sign, over its standard deviation."""
+LEAST_PARTS, JUMP = 8, 6.0
+"""Parts of a cycle at least, and how far a jump of the torque from one to the next stands out."""
 CLEAR = 4.0
 """An order of the angle counts where its amplitude is so many standard deviations of what noise leaves there."""
 
@@ -124,18 +127,46 @@ class Record:
         return Course.through(self.speed, swing.at(at) - offset, self.swing.period)
 
     def of_cycle(self, values: Array) -> Array:
-        """What values (samples,) over the steps of `course` are at the instants of the record."""
-        phase = np.mod((self.time - self.swing.begin) / self.swing.period, 1.0)
+        """What values (steps,) after the steps of `course` are at the instants of the `clear` samples."""
+        phase = self._phase[self.clear]
         steps = np.arange(values.size + 1) / values.size
         return np.asarray(np.interp(phase, steps, np.concatenate([values[-1:], values])), dtype=float)
 
+    @property
+    def _phase(self) -> Array:
+        """Of the samples within the cycle, 0 to 1."""
+        return np.mod((self.time - self.swing.begin) / self.swing.period, 1.0)
+
+    @cached_property
+    def clear(self) -> BoolArray:
+        """Which samples (samples,) are not beside a jump of the torque.
+
+        There means over parts of the cycle, as many as it has samples, differ from the next one far beyond noise, and
+        beyond what they do elsewhere.  A body that has crossed a clearance strikes its end there.  Models without
+        inertia do not describe that; of such a sample they tell the instant of the jump, and in steps by chance.
+        """
+        parts = max(int(self.time.size * self.swing.period / np.ptp(self.time)), LEAST_PARTS)
+        part = np.minimum((self._phase * parts).astype(np.int64), parts - 1)
+        mean = self._means(self.torque, part, parts)
+        step = np.abs(np.roll(mean, -1) - mean)
+        spread = self.noise * np.sqrt(2.0 * parts / self.time.size)
+        jump = np.nan_to_num(step) > JUMP * max(spread, float(np.nanmedian(step)))
+        beside = jump | np.roll(jump, 1)
+        for way in (-1, 1):
+            beside = beside | np.roll(beside, way)
+        return np.asarray(~beside[part])
+
     def averaged(self, values: Array, bins: int) -> Array:
-        """Means of values (samples,) over equal parts of the cycle, all cycles together; NaN where there are none."""
-        phase = np.mod((self.time - self.swing.begin) / self.swing.period, 1.0)
-        part = np.minimum((phase * bins).astype(np.int64), bins - 1)
-        count = np.bincount(part, minlength=bins)
-        total = np.bincount(part, weights=values, minlength=bins)
-        return np.asarray(np.divide(total, count, out=np.full(bins, np.nan), where=count > 0))
+        """Means of values over equal parts of the cycle, all cycles together, NaN where there are none: of all samples,
+        or of those that are `clear`."""
+        phase = self._phase if values.size == self.time.size else self._phase[self.clear]
+        return self._means(values, np.minimum((phase * bins).astype(np.int64), bins - 1), bins)
+
+    @staticmethod
+    def _means(values: Array, part: IntArray, parts: int) -> Array:
+        count = np.bincount(part, minlength=parts)
+        total = np.bincount(part, weights=values, minlength=parts)
+        return np.asarray(np.divide(total, count, out=np.full(parts, np.nan), where=count > 0))
 
 
 def white_noise(time: Array, values: Array) -> float:

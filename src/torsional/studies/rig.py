@@ -31,14 +31,19 @@ from torsional.units import RPM
 Design = TypeVar("Design", bound=SpringFlywheel)
 ENDS = "primary", "secondary"
 ROUGH_STEPS, STEPS = 96, 640
-"""Steps of a cycle in which a model is followed while its parameters are looked for, first and last; 400 at last would
-shift the coefficient of friction by four standard deviations of claim F1's loops, 0.15 %."""
+"""Steps of a cycle in which a model is followed while its parameters are looked for, and from there on, where what the
+steps leave is extrapolated away: it alone moves the coefficient of friction of claim F1's loops by two standard
+deviations."""
+RIG_STEPS = 16 * STEPS
+"""Of the virtual rig, which has none of the model's."""
 ROUGH = 1e-2
 """Change of the sum of squares at which the first search ends."""
-BED, STIFF, SETTLING, RUN, LONGEST = ("actuator", "bed"), 1e9, 1e-5, 4, 1.5e-4
-"""Of runs in time: shafts of the rig, their stiffness [Nm/rad] and relaxation [s]; cycles, and the longest step [s]."""
-CYCLES, SAMPLES = 20, 400
-"""Cycles of a record, and samples of each."""
+BED, STIFF, SETTLING, RUN, LONGEST, TOLD = ("actuator", "bed"), 1e9, 1e-5, 4, 1.5e-4, 640
+"""Of runs in time: shafts of the rig, their stiffness [Nm/rad] and relaxation [s]; cycles, the longest step [s], and
+instants of a cycle that are told."""
+CYCLES, SAMPLES = 20, 400.618034
+"""Cycles of a record, and samples of each: no whole number, as no clock of a rig is a multiple of its swing.  Samples
+at the same phases of all cycles would meet a jump of the torque in each of them or in none."""
 
 
 class Point(NamedTuple):
@@ -71,7 +76,7 @@ def on_rig(design: SpringFlywheel) -> System:
     return assemble(Powertrain(detailed(design).components))
 
 
-def course(design: SpringFlywheel, point: Point, steps: int = STEPS) -> Course:
+def course(design: SpringFlywheel, point: Point, steps: int = RIG_STEPS) -> Course:
     """The sine about the angle at which the frictionless flywheel carries the mean torque."""
     centre = float(spring_characteristic(design).angle(point.mean_torque)) if point.mean_torque else 0.0
     phase = 2.0 * np.pi * np.arange(1, steps + 1) / steps
@@ -111,7 +116,7 @@ def in_time(design: SpringFlywheel, points: Sequence[Point]) -> list[Array]:
     """
     bed = {name: Shaft(node, "ground", STIFF, STIFF * SETTLING) for name, node in zip(BED, ENDS, strict=True)}
     system = assemble(Powertrain({**detailed(design).components, **bed}))
-    return [_in_time(system, course(design, point), point) for point in points]
+    return [_in_time(system, course(design, point, TOLD), point) for point in points]
 
 
 def _in_time(system: System, along: Course, point: Point) -> Array:
@@ -126,17 +131,17 @@ def _in_time(system: System, along: Course, point: Point) -> Array:
 
 
 def _record(point: Point, angle: Array, torque: Array, sensors: Sensors, draw: np.random.Generator) -> Record:
-    time = np.arange(CYCLES * SAMPLES) / (SAMPLES * point.frequency)
-    phase = np.mod(time * point.frequency + draw.random(), 1.0)
+    cycles = np.arange(int(CYCLES * SAMPLES)) / SAMPLES
+    phase = np.mod(cycles + draw.random(), 1.0)
 
     def sensed(values: Array, offset: float) -> Array:
         steps = np.arange(values.size + 1) / values.size
         told = np.interp(phase, steps, np.concatenate([values[-1:], values]))
         noise = sensors.noise * 0.5 * np.ptp(values)
-        return np.asarray(told + offset + noise * draw.standard_normal(time.size))
+        return np.asarray(told + offset + noise * draw.standard_normal(cycles.size))
 
     angle, torque = sensed(angle, sensors.angle_offset), sensed(torque, sensors.torque_offset)
-    return Record(point.name, point.speed, time, angle, torque)
+    return Record(point.name, point.speed, cycles / point.frequency, angle, torque)
 
 
 def with_values(design: Design, values: Mapping[str, float]) -> Design:
@@ -187,8 +192,9 @@ def found_on_rig(
     ``design`` makes it of values by name.
     """
     measured = torques_in(loops)
-    long, short = torques_of(design, loops, ROUGH_STEPS), torques_of(design, loops)
-    return refined(short, measured, identified(long, measured, unknowns, enough=ROUGH), errors=short.errors)
+    long, short = (torques_of(design, loops, steps) for steps in (ROUGH_STEPS, STEPS))
+    near = identified(long, measured, unknowns, enough=ROUGH)
+    return refined(short.extrapolated, measured, near, errors=short.errors, rough=short)
 
 
 def viscous_share(system: System, loop: Followed, period: float) -> float:

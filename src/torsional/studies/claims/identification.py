@@ -179,7 +179,7 @@ def compared(loops: Sequence[Record], points: Sequence[Point], **models: Identif
     values["measured"] = (over, np.array([loop.averaged(loop.torque, BINS) for loop in loops]), "torque")
     for name, model in models.items():
         left = zip(loops, model.residuals, strict=True)
-        fitted = [loop.averaged(loop.torque - each * loop.noise, BINS) for loop, each in left]
+        fitted = [loop.averaged(loop.torque[loop.clear] - each * loop.noise, BINS) for loop, each in left]
         values[name] = (over, np.array(fitted), "torque")
         values[f"{name}_misfit"] = (("loop",), model.misfits, "ratio")
     coordinates = {name: (np.array(of), kind, "loop") for name, kind, of in _axes(points)}

@@ -102,6 +102,8 @@ def judged(full: Identified, others: Mapping[str, Identified], unloaded: Array, 
         figures[f"{name}: residuals over the noise, RMS [-]"] = model.misfit
         figures[f"{name}: the same of the worst loop [-]"] = float(model.misfits.max())
         figures[f"{name}: squares left beyond those, in their standard deviations [-]"] = excess(model, full)
+        criteria = model.aicc - full.aicc, model.bic - full.bic
+        figures[f"{name}: Akaike's (AICc) and Schwarz's criterion above those [-]"] = criteria
     at = f"viscous share of friction's loss, ±{', '.join(f'{np.degrees(a):.0f}' for a in SWEEPS)}°"
     rpm = ", ".join(f"{speed / RPM:.0f}" for speed in SPEEDS)
     for pace in (SLOW, FAST, FREQUENCIES[-1]):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
 import numpy as np
+import xarray as xr
 from pydantic import Field
 
 from torsional.errors import ModelError, nearest
@@ -18,6 +19,7 @@ from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.identification.sources import History, Loops, Orders, ends_of
 from torsional.studies.order_curves import BETWEEN, CARRIED, NODAL, Amplitude, curves_of_result, curves_of_table
+from torsional.studies.raw_loops import Cut, loops_of_run, places_of
 from torsional.studies.records import loops_of_file, white_noise
 from torsional.tables import cells, named, parse_table
 from torsional.units import quoted
@@ -35,19 +37,42 @@ class Seen(Block):
     zeros: bool = False
 
 
+class PointBlock(Block):
+    """When an operating point was held."""
+
+    name: str = Field("", max_length=200, description="default: loop 1, loop 2 …")
+    begin: Annotated[float, Quantity("time")]
+    end: Annotated[float, Quantity("time")]
+
+
 class LoopsBlock(Seen):
-    """Loops of a rig: columns loop, time, speed, angle and torque."""
+    """Loops of a rig: columns loop, time, speed, angle and torque; with a mapping, cut out of a measurement."""
 
     kind: Literal["loops"]
     gear: GearName = ""
     turned: Node = Field("", description="default: the flywheel on the crankshaft")
     held: Node = Field("", description="default: the flywheel that carries the clutch")
     zeros: bool = Field(True, description="whether the sensors' zeros are looked for too")
+    mapping: str = Field("", description="mapping file beside the plan, of a measurement of any format")
+    points: list[PointBlock] = Field(default_factory=list, description="of a measurement; default: all of it is one")
+    sensor: Node = Field("", description="connection of the mapped torque; default: the only one")
+    inertia: Annotated[float, Quantity("inertia", least=0)] | None = Field(
+        None, description="between that and the springs; default: what a rig has there"
+    )
+    speed: Annotated[float, Quantity("speed", least=0)] | None = Field(
+        None, description="of rotation; default: what channels tell"
+    )
 
     def source(self, model: Model, folder: Path) -> Loops:
         """The loops, with the nodes between which they were measured."""
-        ends = ends_of(model, self.turned, self.held)
-        return Loops(loops_of_file(folder / self.file), ends, model.gear_name(self.gear or None), self.weights)
+        ends, gear = ends_of(model, self.turned, self.held), model.gear_name(self.gear or None)
+        if not self.mapping:
+            return Loops(loops_of_file(folder / self.file), ends, gear, self.weights)
+        data = channels_of(folder, self.file, self.mapping, model)
+        places = places_of(data, model, ends, self.sensor, self.inertia)
+        cuts = [Cut(each.name or f"loop {n}", each.begin, each.end) for n, each in enumerate(self.points, 1)]
+        records = loops_of_run(data, places, cuts, self.speed)
+        return Loops(records, (places.drive, places.held), gear, self.weights)
 
 
 class OrdersBlock(Seen):
@@ -121,9 +146,7 @@ class HistoryBlock(Seen):
         return np.array(table["time"]), np.array(table[quantity]), quantity
 
     def _mapped(self, model: Model, folder: Path) -> tuple[Array, Array, str]:
-        from torsional.measurements import load_mapping, mapped, read_measurement
-
-        data = mapped(read_measurement(folder / self.file), load_mapping(folder / self.mapping), model)
+        data = channels_of(folder, self.file, self.mapping, model)
         there = {name: BETWEEN.get(name, name) for name in (self.quantity and [self.quantity]) or CARRIED}
         for quantity, name in there.items():
             dim = "node" if quantity in NODAL else "element"
@@ -134,6 +157,13 @@ class HistoryBlock(Seen):
                     return own.time.values[kept], own.values[kept], quantity
         wanted = self.quantity or "signal"
         raise ModelError(f"the mapping brings no {wanted} to this place", where="place", found=quoted(self.place))
+
+
+def channels_of(folder: Path, file: str, mapping: str, model: Model) -> xr.Dataset:
+    """Channels of a measurement at their places of the model."""
+    from torsional.measurements import load_mapping, mapped, read_measurement
+
+    return mapped(read_measurement(folder / file), load_mapping(folder / mapping), model)
 
 
 def _refuse_place(model: Model, place: str, quantity: str, gear: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from torsional.solvers.hysteresis import absorber_ends
 from torsional.solvers.run_up import run_up_response
 from torsional.studies.estimates import Measured
 from torsional.studies.identify import Errors, Prediction
-from torsional.studies.loop_torques import LoopTorques
+from torsional.studies.loop_torques import LoopTorques, torques_in
 from torsional.studies.order_curves import curves_of_result
 from torsional.studies.records import Record
 from torsional.studies.rig import ROUGH_STEPS, STEPS
@@ -27,6 +27,9 @@ PARTS = 120
 """Parts of a cycle over which pictures show means of all cycles, at most."""
 Making = Callable[[Mapping[str, float]], Model]
 """A model made of values by key path; names of other parameters are passed over."""
+
+Use = Literal["search", "slopes", "residuals"]
+"""What a prediction is for: a search may be rough, residuals at last are not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +52,7 @@ class Source(Protocol):
     def only(self, names: Sequence[str]) -> Source:
         """The same with some of its points."""
 
-    def predicted(self, made: Making, rough: bool) -> Prediction:
+    def predicted(self, made: Making, use: Use) -> Prediction:
         """What models made of values would show."""
 
     def errors(self, made: Making) -> Errors:
@@ -77,7 +80,7 @@ class Loops:
     def points(self) -> list[Measured]:
         """The torques, each over its own noise."""
         weight = self.weights or {}
-        return [Measured(loop.name, loop.torque, loop.noise, weight.get(loop.name, 1.0)) for loop in self.records]
+        return [replace(point, weight=weight.get(point.name, 1.0)) for point in torques_in(self.records)]
 
     def only(self, names: Sequence[str]) -> Loops:
         """Some of the loops."""
@@ -89,9 +92,10 @@ class Loops:
 
         return LoopTorques(system, self.ends, self.records, steps)
 
-    def predicted(self, made: Making, rough: bool) -> Prediction:
+    def predicted(self, made: Making, use: Use) -> Prediction:
         """Torques along the measured angles, inertia left out."""
-        return self._torques(made, ROUGH_STEPS if rough else STEPS)
+        torques = self._torques(made, ROUGH_STEPS if use == "search" else STEPS)
+        return torques.extrapolated if use == "residuals" else torques
 
     def errors(self, made: Making) -> Errors:
         """What the encoders' noise does to them."""
@@ -140,7 +144,7 @@ class Orders:
         """Some of the orders."""
         return replace(self, curves={n: values for n, values in self.curves.items() if self._named(n) in names})
 
-    def predicted(self, made: Making, rough: bool) -> Prediction:
+    def predicted(self, made: Making, use: Use) -> Prediction:
         """The linear response at the operating point of every speed."""
         orders = list(self.curves)
 
@@ -193,7 +197,7 @@ class History:
         """The same: there is but one."""
         return self
 
-    def predicted(self, made: Making, rough: bool) -> Prediction:
+    def predicted(self, made: Making, use: Use) -> Prediction:
         """The signal of the scenario's run."""
 
         def told(values: Mapping[str, float]) -> list[Array]:

@@ -13,7 +13,7 @@ from torsional.files.edit import changed
 from torsional.model import Model
 from torsional.numerics.arrays import Array
 from torsional.studies.estimates import LEVEL, Identified, Measured, Unknown
-from torsional.studies.identification.sources import Source
+from torsional.studies.identification.sources import Source, Use
 from torsional.studies.identify import Errors, Prediction, appraised, identified, refined
 from torsional.studies.loop_torques import ANGLE_OFFSET, TORQUE_OFFSET
 from torsional.studies.rig import ROUGH
@@ -81,9 +81,9 @@ class Fit:
     held_misfit: float
 
 
-def joined(sources: Sequence[Source], made: Callable[[Mapping[str, float]], Model], rough: bool) -> Prediction:
+def joined(sources: Sequence[Source], made: Callable[[Mapping[str, float]], Model], use: Use) -> Prediction:
     """What all sources would show, one after the other."""
-    each = [source.predicted(made, rough) for source in sources]
+    each = [source.predicted(made, use) for source in sources]
     return lambda values: [array for told in each for array in told(values)]
 
 
@@ -98,14 +98,16 @@ def fitted(task: Task, candidate: Candidate) -> Fit:
     sources = task.parts(held=False)
     points = [point for source in sources for point in source.points]
     made = candidate.made()
-    rough, fine = (joined(sources, made, each) for each in (True, False))
-    near = identified(rough, points, candidate.unknowns, starts=task.starts, seed=task.seed, enough=ROUGH)
-    found = refined(fine, points, near, errors=joined_errors(sources, made))
+    near = identified(
+        joined(sources, made, "search"), points, candidate.unknowns, starts=task.starts, seed=task.seed, enough=ROUGH
+    )
+    left, slopes = joined(sources, made, "residuals"), joined(sources, made, "slopes")
+    found = refined(left, points, near, errors=joined_errors(sources, made), rough=slopes)
     return _predicted(task, candidate, found)
 
 
 def _predicted(task: Task, candidate: Candidate, found: Identified) -> Fit:
-    told = joined(task.sources, candidate.made(), False)(found.values)
+    told = joined(task.sources, candidate.made(), "residuals")(found.values)
     points = [point for source in task.sources for point in source.points]
     held = [
         (point.values - each) / point.noise for point, each in zip(points, told, strict=True) if point.name in task.held
@@ -143,16 +145,17 @@ def _held_at(task: Task, fit: Fit, name: str, value: float) -> float:
     """Sum of squares with a parameter held, all others fitted from where they were found, over that of the fit."""
     sources, made = task.parts(held=False), fit.candidate.made()
     points = [point for source in sources for point in source.points]
-    own = joined(sources, made, False)
+    own, slopes = joined(sources, made, "residuals"), joined(sources, made, "slopes")
     base = float(squares(points, own(fit.found.values)))
     others = [replace(u, start=fit.found.values[u.name]) for u in fit.found.unknowns if u.name != name]
 
-    def predicted(values: Mapping[str, float]) -> Sequence[Array]:
-        return own({**{u.name: values.get(u.name, value) for u in fit.found.unknowns}})
+    def held(told: Prediction) -> Prediction:
+        return lambda values: told({u.name: values.get(u.name, value) for u in fit.found.unknowns})
 
     if not others:
-        return float(squares(points, predicted({}))) / base
-    return refined(predicted, points, appraised(predicted, points, others)).squares / base
+        return float(squares(points, held(own)({}))) / base
+    rough = held(slopes)
+    return refined(held(own), points, appraised(rough, points, others), rough=rough).squares / base
 
 
 def squares(points: Sequence[Measured], told: Sequence[Array]) -> float:
