@@ -8,6 +8,7 @@ from scipy.signal import firwin, lfilter
 
 import torsional as tv
 from torsional.errors import ModelError
+from torsional.plots.reach import plot_sensor_reach
 from torsional.quantities.frequency_response import frequency_response
 from torsional.studies.rig_model import Instruments, held_inertia, mounted_on_rig, sensor_reach
 from torsional.studies.rig_run import Encoder, RigSensors, dynamic_stiffness, loop_of_run, measured_run
@@ -58,6 +59,17 @@ def test_a_brake_that_is_free_moves_too(linear: tv.Model) -> None:
     assert abs(found.sensed.values[0]) == pytest.approx(share, rel=1e-3)
     assert np.isnan(found.reach.sel(told="sensed")) and float(found.reach.sel(told="corrected")) > 60
     assert sensor_reach(linear, 0.01).reach.values[1] < float(found.reach.sel(told="corrected"))
+
+
+def test_the_reach_as_a_picture(linear: tv.Model) -> None:
+    """The line of the torque as sensed is its ratio; a dot for what reaches anywhere, none for what does not."""
+    found = sensor_reach(linear, 0.05)
+    size, angle = plot_sensor_reach(found).axes
+    lines = {str(line.get_gid()): np.asarray(line.get_ydata()) for line in size.lines}
+    np.testing.assert_allclose(lines["sensed"], np.abs(found.sensed.values))
+    dots = [float(np.asarray(line.get_xdata())[0]) for line in size.lines if len(np.atleast_1d(line.get_xdata())) == 1]
+    assert sorted(dots) == sorted(found.reach.values[np.isfinite(found.reach.values)].tolist()) and len(dots) == 2
+    assert np.abs(np.asarray(angle.lines[0].get_ydata())).max() > 170  # beyond the brake's resonance
 
 
 def test_names_that_the_rig_does_not_have(linear: tv.Model) -> None:
