@@ -123,9 +123,13 @@ def _point(system: System, shape: tuple[int, ...], torque: Array, angle: Array) 
     Normal loads are those of the mean torques at standstill; what speed adds is `with_load_stiffness`.
     """
     c = system.connections
-    pressed = [dict(zip(c.names, t, strict=True)) for t in torque]
-    tangents = np.array([_forces(system.loaded(0.0, p), a)[1:] for p, a in zip(pressed, angle, strict=True)])
-    each = (torque, angle, tangents[:, 0], tangents[:, 1])
+    if any(load is not None for load in c.loads):
+        pressed = [dict(zip(c.names, t, strict=True)) for t in torque]
+        found = [_forces(system.loaded(0.0, p), a) for p, a in zip(pressed, angle, strict=True)]
+        tangent, drag = (np.array([each[place] for each in found]) for place in (1, 2))
+    else:
+        _, tangent, drag = _forces(system, angle)
+    each = (torque, angle, tangent, drag)
     torque, angle, stiffness, damping = (value.reshape(*shape, len(c.names)) for value in each)
     return OperatingPoint(c.names, torque, angle, stiffness, damping, c.laws)
 
@@ -232,13 +236,15 @@ def _angles(system: System, index: int, torque: Array) -> Array:
 
 
 def _forces(system: System, angle: Array) -> tuple[Array, Array, Array]:
-    """Torque, tangent stiffness and tangent damping of every connection at rest at its angle."""
+    """Torque, tangent stiffness and tangent damping of every connection at rest at its angle (…, connections)."""
     c = system.connections
-    torque, tangent, damping = c.stiffness * angle, c.stiffness.copy(), c.damping.copy()
+    torque = c.stiffness * angle
+    tangent, damping = (np.broadcast_to(value, angle.shape).copy() for value in (c.stiffness, c.damping))
     for i, law in enumerate(c.laws):
         if law is not None and not c.whole_speed[i]:
-            force, slope, drag = law.evaluate(angle[i])[:3]
-            torque[i], tangent[i], damping[i] = torque[i] + force, tangent[i] + slope, damping[i] + drag
+            told = law.evaluate(angle[..., i])[:3]
+            for values, own in zip((torque, tangent, damping), told, strict=True):
+                values[..., i] += own
     return torque, tangent, damping
 
 
