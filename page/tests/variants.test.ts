@@ -72,7 +72,7 @@ describe("criteria", () => {
   it("marks the best by its sense, and gives differences to the reference", () => {
     const [torque, stop] = rowsOf([[criterion("torque", 200), criterion("stop", -1, "more")], [criterion("torque", 150), criterion("stop", -2, "more")]], 0);
     expect([torque.best, torque.differences]).toEqual([[false, true], [0, -0.25]]);
-    expect([stop.best, stop.differences]).toEqual([[true, false], [0, -1]]);
+    expect([stop.best, stop.differences]).toEqual([[true, false], [null, null]]);
   });
 
   it("knows no best where all are alike, one is alone, or a design has no answer", () => {
@@ -81,6 +81,7 @@ describe("criteria", () => {
     expect([alone.best, alone.differences]).toEqual([[false, false, false], [null, 0, null]]);
   });
 
+  it("finds no share of what is negative", () => expect(rowsOf([[criterion("a", 2)], [criterion("a", -3)]], 0)[0].differences).toEqual([0, null]));
   it("finds no share of nothing", () => expect(rowsOf([[criterion("a", 0)], [criterion("a", 3)]], 0)[0].differences).toEqual([null, null]));
 
   it.each([[0.123, "+12.3 %"], [-0.004, "−0.40 %"], [1.5, "+150 %"], [-1e-9, "±0.00 %"]])("tells %d", (share, text) => expect(percent(share)).toBe(text));

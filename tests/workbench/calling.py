@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Coroutine, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -33,8 +34,12 @@ class Got:
 
 
 def soon(work: Coroutine[Any, Any, Value], within: float = 60.0) -> Value:
-    """What comes of it; a failure where that lasts too long."""
-    return asyncio.run(asyncio.wait_for(work, within))
+    """What comes of it; a failure where that lasts too long.
+
+    In a thread of its own: that of the tests has a loop running once a browser was driven from it.
+    """
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, asyncio.wait_for(work, within)).result()
 
 
 async def called(

@@ -18,6 +18,7 @@ interface Modes {
   speed: number;
   order: number | null;
   name: string[];
+  absorber_mode: string;
   nodes: string[];
   elements: string[];
   masses: string[];
@@ -36,8 +37,7 @@ function asks({ point }: Context): Ask[] {
 function ModesView({ told, variants, model, settings, set }: Shown) {
   const found = told.answers[0] as Modes;
   const units = useStore((state) => state.start?.units ?? {});
-  const elastic = firstElastic(found);
-  const asked = typeof settings.mode === "number" ? settings.mode : elastic;
+  const asked = typeof settings.mode === "number" ? settings.mode : firstShown(found);
   const mode = Math.min(asked, found.name.length - 1);
   const others = variants.map(({ name, told: other }) => ({ name, found: other?.answers[0] as Modes | undefined }));
   const point = `${found.gear ? `gear ${found.gear}, ` : ""}${amount(units, "torque", found.torque)}, ${amount(units, "speed", found.speed)}`;
@@ -54,6 +54,12 @@ function ModesView({ told, variants, model, settings, set }: Shown) {
       </div>
     </>
   );
+}
+
+/** The absorber's own mode, or the first that is no turning as one. */
+function firstShown(found: Modes): number {
+  const own = found.name.indexOf(found.absorber_mode);
+  return own < 0 ? firstElastic(found) : own;
 }
 
 /** The first mode that is no turning as one. */

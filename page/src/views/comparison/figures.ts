@@ -29,9 +29,10 @@ export function rowsOf(designs: (Criterion[] | null)[], reference: number): Row[
   });
 }
 
+/** What may be negative, as the way left to a stop, has no per cents there. */
 function relative(value: number | null, reference: number | null): number | null {
-  if (value === null || !reference || !Number.isFinite(value)) return null;
-  return (value - reference) / Math.abs(reference);
+  if (value === null || reference === null || !(reference > 0) || !(value >= 0) || !Number.isFinite(value)) return null;
+  return (value - reference) / reference;
 }
 
 /** No design is best where all are alike, or where only one has the figure. */

@@ -36,6 +36,7 @@ class AskModes(AskInGear):
             "speed": speed,
             "order": order,
             "name": named["name"],
+            "absorber_mode": model.absorber_mode,
             "nodes": named["node"],
             "elements": named["element"],
             "masses": named["mass"],
