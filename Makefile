@@ -33,10 +33,12 @@ demo: $(VENV)/.installed-run  ## install, then compare the shipped truck's dual 
 # Compiled beforehand, since processes that compile one function for different arguments at the same moment may be handed each
 # other's code by numba's cache.
 test: $(VENV)/.installed-test  ## install what the tests need and run them all
+	@$(page_if_node)
 	$(BIN)/torsional warmup --quiet
 	$(BIN)/python -m pytest -n $(JOBS)
 
 test-full: $(VENV)/.installed-test  ## the tests with the heavy checks
+	@$(page_if_node)
 	$(BIN)/torsional warmup --quiet
 	$(BIN)/python -m pytest -n $(JOBS) -m "full or not full"
 
@@ -116,6 +118,11 @@ $(BENCH_VENV)-%/.tried: benchmarks/peer_%.txt
 	@mkdir -p $(@D) && touch $@
 
 # --- the workbench's page: what it is made of undoes its build ---
+
+define page_if_node
+if command -v npm > /dev/null && node -e "const [a, b] = process.versions.node.split('.').map(Number); process.exit(a > 22 || (a == 22 && b > 11) || (a == 20 && b > 18) ? 0 : 1)"; \
+then $(MAKE) --no-print-directory page; else echo "Node 20.19 or newer is not here: the workbench's page is not built, and its tests in a browser are skipped."; fi
+endef
 
 PAGE_SOURCES := $(shell find page -name node_modules -prune -o -type f -print)
 
