@@ -122,7 +122,6 @@ def test_a_study_is_written_as_a_table_and_a_picture(opened: Opened, browsing: S
     assert b"9576.1234567," in (tmp_path / "csv").read_bytes()
 
 
-@pytest.mark.full
 def test_branches_outlive_a_reload_and_say_when_they_are_out_of_date(page: Page) -> None:
     """The two-stage flywheel at 1200 Nm: a period doubling at either end of the motion of every second ignition."""
     with page.expect_file_chooser() as chooser:
